@@ -129,7 +129,8 @@ BilliardTally Billiard::fly(int particles, int steps, double impacts, double gra
     const std::vector<Material> materials{{"elastic", 1.0, 0.0}};
     ResponseSettings settings;
     settings.integrator = kind;
-    const ExactResponse response(world_, forces, materials, settings);
+    const MovingColliders bodies(world_);
+    const ExactResponse response({world_, bodies, forces, materials, settings});
     std::vector<BilliardTally> parts((start.size() + kBlock - 1) / kBlock);
     parallel_for_blocks(start.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         MoveScratch scratch;

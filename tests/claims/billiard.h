@@ -7,7 +7,7 @@
 
 #include "claims/hard_meshes.h"
 #include "ricochet/collision/collision_world.h"
-#include "ricochet/collision/path_point.h"
+#include "ricochet/collision/surfaces_in_time.h"
 #include "ricochet/dynamics/flight.h"
 #include "support/parity.h"
 

@@ -32,7 +32,9 @@ Material lambert() {
 /// Walls of one material without forces.
 struct Vessel {
     Vessel(std::vector<ColliderDescription> colliders, Material material)
-        : world(std::move(colliders)), materials{std::move(material)}, response(world, forces, materials, settings()) {}
+        : world(std::move(colliders)),
+          materials{std::move(material)},
+          response({world, bodies, forces, materials, settings()}) {}
     static ResponseSettings settings() {
         ResponseSettings settings;
         settings.bounce_budget = 1000000;
@@ -40,6 +42,7 @@ struct Vessel {
         return settings;
     }
     CollisionWorld world;
+    MovingColliders bodies{world};
     ForceField forces{{}};
     std::vector<Material> materials;
     ExactResponse response;
@@ -221,7 +224,8 @@ TEST(GasUnderGravity, HasTheBarometricProfileOverADiffuseFloor) {
     std::vector<std::unique_ptr<Force>> list;
     list.push_back(make_gravity({0, 0, -kGravity}));
     const ForceField forces(std::move(list));
-    const ExactResponse response(world, forces, materials, Vessel::settings());
+    const MovingColliders bodies(world);
+    const ExactResponse response({world, bodies, forces, materials, Vessel::settings()});
     Sample height;
     Sample above_scale_height;
     MoveScratch scratch;

@@ -35,7 +35,7 @@ struct RisingTriangle {
         shape.motion = std::make_shared<const MeshMotion>(sampled_motion(positions_at, {0.0, 1.0}, MeshEnds::hold));
         list = std::make_shared<ColliderList>(std::vector<ColliderDescription>{{"rising", shape, 0}});
         at_rest = std::make_unique<CollisionWorld>(list, "");
-        bodies = std::make_unique<MovingColliders>(*at_rest, list, frames, kChordMargin);
+        bodies = std::make_unique<MovingColliders>(*at_rest, frames);
         bodies->prepare_radius(0.125);
         at_rest->prepare_radius(0.125);
         bodies->begin_step(0.0, 1.0);
@@ -50,13 +50,13 @@ TEST(DeformingSweep, LetsASphereOverlapByTheRoundingOfItsOwnPositionOnly) {
     for (const double far : {1.0, 1e5}) {
         const Vec3 begin{0, 0, 1};
         const Path path = line_path(begin, {far, 0, 0}, 1.0);
-        const MovingView view(*scene.bodies, kWorldBody, {0.0, 1.0, 0.0, 0.0, 1.0});
+        const SurfacesInTime surfaces(*scene.bodies, kWorldBody, {0.0, 1.0, 0.0, 0.0, 1.0});
         TrianglePlaneCache planes;
         const SurfaceGeometry geometry(*scene.at_rest, planes);
         ContactScratch scratch;
         const ContactQuery query{path, kRadius};
         const PathPoint start{begin, 0.0, begin};
-        MovingSweep sweep(view, geometry, query, start, scratch);
+        MovingSweep sweep(surfaces, geometry, query, start, scratch);
         const ContactQueryResult found = sweep.sweep(start);
         // The segment goes straight down to the triangle's position at that time. It does not depend on the path.
         const auto is_free_with_gap = [&](double gap) {

@@ -44,7 +44,7 @@ struct ManyBodies {
         frames = std::make_shared<const FrameTree>(descriptions);
         list = std::make_shared<ColliderList>(std::move(colliders));
         at_rest = std::make_unique<CollisionWorld>(list, "");
-        bodies = std::make_unique<MovingColliders>(*at_rest, list, frames, kChordMargin);
+        bodies = std::make_unique<MovingColliders>(*at_rest, frames);
     }
 };
 
@@ -91,8 +91,8 @@ TEST(Births, FindTheBodiesThatATestOfEachBodyFinds) {
             std::vector<BodyId> asked;
             all.bodies->near_at({center, center}, time, asked);
             EXPECT_EQ(asked.size(), all.bodies->size());
-            const auto expected = deepest_overlap(*all.at_rest, all.bodies.get(), center, radius, time);
-            const auto overlap = deepest_overlap(*near.at_rest, near.bodies.get(), center, radius, time);
+            const auto expected = deepest_overlap(*all.bodies, center, radius, time);
+            const auto overlap = deepest_overlap(*near.bodies, center, radius, time);
             ASSERT_EQ(overlap.has_value(), expected.has_value());
             if (overlap) {
                 EXPECT_EQ(overlap->surface, expected->surface);

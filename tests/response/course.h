@@ -25,7 +25,7 @@ struct Course {
         : world(std::move(colliders)),
           forces(field(gravity)),
           materials{std::move(material)},
-          response(make_response(kind, {world, forces, materials, settings})) {}
+          response(make_response(kind, {world, bodies, forces, materials, settings})) {}
 
     static ResponseSettings settings_of(IntegratorKind integrator, std::uint32_t budget) {
         ResponseSettings settings;
@@ -76,6 +76,7 @@ struct Course {
     }
 
     CollisionWorld world;
+    MovingColliders bodies{world};
     ForceField forces;
     std::vector<Material> materials;
     std::unique_ptr<Response> response;

@@ -50,14 +50,16 @@ TEST(TheBendAtADeformingEdge, CurvatureIsTheSecondDerivativeOfTheDistance) {
         particle.time = kTime;
         particle.radius = kRadius;
         particle.position = {0.1, 0.31 / 3.0, kRadius};
-        const CollisionWorld::Nearest here = deforming.nearest(0, particle.position, kTime);
+        const CollisionWorld::Nearest here = deforming.triangle_at(0, kTime).nearest(particle.position);
         ASSERT_FALSE(here.flat);
         // The particle moves along and past the edge at a momentarily constant distance.
         particle.velocity = any();
-        const Vec3 slip = particle.velocity - deforming.motion_at(0, particle.position, kTime).velocity;
+        const Vec3 slip = particle.velocity - deforming.mesh(0).motion_at(0, particle.position, kTime).velocity;
         particle.velocity -= dot(slip, here.normal) * here.normal;
         const auto distance = [&](double time) {
-            return deforming.nearest(0, particle.position + time * particle.velocity, kTime + time).distance;
+            return deforming.triangle_at(0, kTime + time)
+                .nearest(particle.position + time * particle.velocity)
+                .distance;
         };
         const double bend = (distance(kStep) - 2.0 * distance(0.0) + distance(-kStep)) / (kStep * kStep);
         EXPECT_NEAR(curvature_of(deforming, particle, {0, here.normal, false}).curvature, bend, 1e-4);

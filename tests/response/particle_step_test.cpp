@@ -73,7 +73,8 @@ TEST(SegmentChain, RecordsSegmentsOnlyOnRequest) {
     particle.state.position = {1, 0, 0};
     particle.stored_time = 2.0;
     MoveScratch scratch;
-    SegmentChain chain(particle, scratch);
+    SegmentChain chain(particle, scratch, true);
+    EXPECT_TRUE(chain.is_timed());
     EXPECT_EQ(chain.start(), Vec3(1, 0, 0));
     chain.add({{2, 0, 0}, 2.5}, 2.0, scratch);
     EXPECT_TRUE(scratch.segments.empty());

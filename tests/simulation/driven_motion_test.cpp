@@ -36,7 +36,7 @@ struct Plate {
         list = std::make_shared<ColliderList>(
             std::vector<ColliderDescription>{{"plate", CuboidShape{{1, 1, 0.1}, {}}, 0, "plate"}});
         at_rest = std::make_unique<CollisionWorld>(list, "");
-        colliders = std::make_unique<MovingColliders>(*at_rest, list, frames, kChordMargin);
+        colliders = std::make_unique<MovingColliders>(*at_rest, frames);
         BodyDescription body;
         body.frame = "plate";
         body.mass = kMass;
@@ -44,7 +44,7 @@ struct Plate {
         body.joint = JointKind::slider;
         ResponseSettings settings;
         settings.time_step = 0.01;
-        motion = std::make_unique<DrivenMotion>(std::vector{body}, frames.get(), colliders.get(), forces, settings);
+        motion = std::make_unique<DrivenMotion>(std::vector{body}, frames.get(), *colliders, forces, settings);
     }
 
     void plan(double begin, double end) {

@@ -165,7 +165,8 @@ TEST(RunCheck, ViolationsOfAParticleAreReported) {
     const CollisionWorld world({mesh_collider(testing::box_mesh({0, 0, 0}, {4, 4, 4})),
                                 {"floor", PlaneShape{{0, 0, -1}, {0, 0, 3}}, 0},
                                 {"ball", BallShape{2.0, {{20, 0, 0}}}, 0}});
-    RunCheck check(world, nullptr);
+    const MovingColliders bodies(world);
+    RunCheck check(world, bodies);
     Particles particles;
     for (std::uint64_t id = 5; id < 9; ++id) {
         Particle particle;

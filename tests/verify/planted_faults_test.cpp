@@ -55,7 +55,9 @@ std::vector<Violation> pair_impact(double speed) {
 
 /// Returns the violations of two spheres of 0.5 m radius, one step after they were 2 m apart.
 std::vector<Violation> pair_at(double distance) {
-    RunCheck check(CollisionWorld({}), nullptr);
+    const CollisionWorld world({});
+    const MovingColliders bodies(world);
+    RunCheck check(world, bodies);
     Particles particles;
     for (std::uint64_t id = 0; id < 2; ++id) {
         Particle particle;

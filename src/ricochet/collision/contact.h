@@ -2,12 +2,15 @@
 /// Results of contact queries: the first contact of a path, and the triangles that come near it next.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "ricochet/collision/collision_world.h"
+#include "ricochet/core/tolerances.h"
 #include "ricochet/core/vec3.h"
 #include "ricochet/geometry/acceleration/triangle_clusters.h"
 
@@ -40,11 +43,21 @@ struct Contact {
 
 /// Returns the unit normal of a surface that a point at p with velocity v reaches from `side` (+1 or -1). A point that
 /// moves exactly in the surface's plane (side 0) has hit its boundary head-on. Its normal is then opposite to its
-/// velocity.
-[[nodiscard]] Vec3 facing_normal(const CollisionWorld& world, SurfaceId surface, int side, const Vec3& p,
-                                 const Vec3& v);
-/// Returns the facing normal of a surface whose unit normal is known.
+/// velocity. `normal` is the surface's unit normal at p.
 [[nodiscard]] Vec3 facing_normal(const Vec3& normal, int side, const Vec3& v);
+
+/// Removes the seams of flat surfaces from a list: edges and vertices beside a face of the same normal. Changes the
+/// order.
+template <class Surface>
+void drop_seams(std::vector<Surface>& list) {
+    const auto faces_end = std::partition(list.begin(), list.end(), [](const Surface& one) { return one.flat; });
+    const auto is_seam = [&](const Surface& edge) {
+        return std::any_of(list.begin(), faces_end, [&](const Surface& face) {
+            return length_squared(face.normal - edge.normal) < 2.0 * kSeamTurn;
+        });
+    };
+    list.erase(std::remove_if(faces_end, list.end(), is_seam), list.end());
+}
 
 /// All triangles that come near a particle's path in one later step, if they are known and few. They affect speed only:
 /// the query of that step needs no broad phase.

@@ -116,7 +116,7 @@ bool NearSurfaces::covers_chord(const Path& path, double from, double to) const 
 }
 
 PathPoint NearSurfaces::point_at(const Vec3& p, double time) const {
-    return other_frames_ == nullptr ? PathPoint{p, time, p} : other_frames_->view().point_at(p, time);
+    return other_frames_ == nullptr ? PathPoint{p, time, p} : other_frames_->surfaces().point_at(p, time);
 }
 
 PathPoint NearSurfaces::start() const {
@@ -137,30 +137,35 @@ std::optional<SurfaceId> NearSurfaces::overlap_deepened_by(const PathPoint& p, c
     return own || other_frames_ == nullptr ? own : other_frames_->overlap_deepened_by(p, q);
 }
 
+bool NearSurfaces::is_own(SurfaceId surface) const { return other_frames_ == nullptr || world().owns(surface); }
+
 CollisionWorld::Nearest NearSurfaces::nearest(SurfaceId surface, const PathPoint& p) const {
-    const bool is_own = other_frames_ == nullptr || world().owns(surface);
-    return is_own ? geometry_.nearest(surface, p.position) : other_frames_->nearest(surface, p);
+    return is_own(surface) ? geometry_.nearest(surface, p.position) : other_frames_->surfaces().nearest(surface, p);
 }
 
 double NearSurfaces::signed_distance_from(SurfaceId surface, const PathPoint& p) const {
-    const bool is_own = other_frames_ == nullptr || world().owns(surface);
-    return is_own ? geometry_.signed_distance_from(surface, p.position)
-                  : other_frames_->signed_distance_from(surface, p);
+    return is_own(surface) ? geometry_.signed_distance_from(surface, p.position)
+                           : other_frames_->surfaces().signed_distance_from(surface, p);
 }
 
 Vec3 NearSurfaces::unit_normal_of(SurfaceId surface, const PathPoint& p) const {
-    const bool is_own = other_frames_ == nullptr || world().owns(surface);
-    return is_own ? geometry_.unit_normal_of(surface, p.position) : other_frames_->unit_normal_of(surface, p);
+    return is_own(surface) ? geometry_.unit_normal_of(surface, p.position)
+                           : other_frames_->surfaces().unit_normal_of(surface, p);
 }
 
-int NearSurfaces::side_of_surface(SurfaceId surface, const PathPoint& p) const {
-    const bool is_own = other_frames_ == nullptr || world().owns(surface);
-    return is_own ? world().side_of_surface(surface, p.position) : other_frames_->side_of_surface(surface, p);
-}
-
-bool NearSurfaces::is_flat(SurfaceId surface) const {
-    const bool is_own = other_frames_ == nullptr || world().owns(surface);
-    return is_own ? world().is_flat(surface) : other_frames_->is_flat(surface);
+ContactSurface NearSurfaces::facing_surface(SurfaceId surface, const PathPoint& p) const {
+    if (radius() > 0.0) {
+        const CollisionWorld::Nearest nearest = this->nearest(surface, p);
+        return {surface, nearest.normal, nearest.flat};
+    }
+    if (is_own(surface)) {
+        const int side = world().side_of_surface(surface, p.position);
+        return {surface, static_cast<double>(side) * geometry_.unit_normal_of(surface, p.position),
+                world().is_flat(surface)};
+    }
+    const SurfacesInTime& surfaces = other_frames_->surfaces();
+    const int side = surfaces.side_of_surface(surface, p);
+    return {surface, static_cast<double>(side) * surfaces.unit_normal_of(surface, p), surfaces.is_flat(surface)};
 }
 
 double NearSurfaces::offset_at(const PathPoint& p) const {

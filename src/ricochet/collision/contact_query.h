@@ -10,7 +10,7 @@
 
 #include "ricochet/collision/broad_phase.h"
 #include "ricochet/collision/look_ahead.h"
-#include "ricochet/collision/path_point.h"
+#include "ricochet/collision/surfaces_in_time.h"
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {
@@ -58,8 +58,8 @@ public:
     [[nodiscard]] CollisionWorld::Nearest nearest(SurfaceId surface, const PathPoint& p) const;
     [[nodiscard]] double signed_distance_from(SurfaceId surface, const PathPoint& p) const;
     [[nodiscard]] Vec3 unit_normal_of(SurfaceId surface, const PathPoint& p) const;
-    [[nodiscard]] int side_of_surface(SurfaceId surface, const PathPoint& p) const;
-    [[nodiscard]] bool is_flat(SurfaceId surface) const;
+    /// Returns a surface with its normal at p, which faces p. The normal is zero if a point p lies in its plane.
+    [[nodiscard]] ContactSurface facing_surface(SurfaceId surface, const PathPoint& p) const;
     /// Returns the contact offset, in m, for the largest coordinate that a position has in any frame.
     [[nodiscard]] double offset_at(const PathPoint& p) const;
 
@@ -80,6 +80,7 @@ public:
 
 private:
     [[nodiscard]] std::vector<SurfaceId> surfaces(const Vec3& p) const;
+    [[nodiscard]] bool is_own(SurfaceId surface) const;
     [[nodiscard]] bool is_overlapped(SurfaceId surface) const;
     /// Returns sphere_tolerance() of a segment, in m; 0 for a point. The path may end far away, and its rounding there
     /// must not let a sphere sink in here.

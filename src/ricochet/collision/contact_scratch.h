@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ricochet/collision/collision_world.h"
-#include "ricochet/collision/path_point.h"
+#include "ricochet/collision/surfaces_in_time.h"
 #include "ricochet/geometry/predicates/triangle_plane.h"
 #include "ricochet/geometry/sweep/path.h"
 
@@ -113,14 +113,18 @@ struct ContactScratch {
     std::vector<PathPoint> chain;  ///< ends of certified segments, see CertifiedPath
     /// Scratch memory of queries in the frames of other bodies, one each.
     std::vector<std::unique_ptr<ContactScratch>> other_frames;
-    /// Lists of a path among moving colliders. A MovingSweep owns them during its lifetime.
+    /// Lists of a path among moving colliders. MovingPieces own them during their lifetime.
     struct Sweep {
+        /// A body near the path.
+        struct NearBody {
+            BodyId id = kWorldBody;
+            double tolerance = 0.0;  ///< largest deviation of a piece from the true path in the body's coordinates, m
+            double fourth = 0.0;     ///< bound of the path's fourth derivative there, in m/s^4
+            double beside = 0.0;     ///< distance from a clear piece within which surfaces are queried, in m
+            Path clear{};            ///< start of a piece without contact, in the body's coordinates
+        };
         std::vector<BodyId> near;
-        std::vector<double> tolerances;
-        std::vector<double> fourth;  ///< bounds of the fourth derivative in the frames of the near bodies, in m/s^4
-        std::vector<double> besides;
-        std::vector<Path>
-            clear;  ///< paths of a trial piece in the frames of the near bodies; only the start without contact is used
+        std::vector<NearBody> bodies;
         std::vector<double> cuts;
         std::vector<double> keys;
     };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/geometry/sweep/closest_point.h"
@@ -10,13 +11,13 @@
 namespace ricochet {
 namespace {
 
-std::array<Vec3, 3> corners_of(const MovingTriangle& triangle, double part) {
+DeformedTriangle deformed_at(const MovingTriangle& triangle, double part) {
     const auto& [a, b, c] = triangle.corners;
     return {a.at(part), b.at(part), c.at(part)};
 }
 
 double distance_at_start(const Path& path, const MovingTriangle& triangle) {
-    const auto [a, b, c] = corners_of(triangle, 0.0);
+    const auto [a, b, c] = deformed_at(triangle, 0.0);
     return std::sqrt(closest_point_on_triangle(path.c[0], a, b, c).distance_squared);
 }
 
@@ -29,23 +30,14 @@ DeformingSweep::DeformingSweep(const DeformingColliders& deforming, const Path& 
     box_.include(path.end);
     const double largest = std::max(max_abs(box_.lower), max_abs(box_.upper));
     if (radius > 0.0) tolerance_ = sphere_tolerance(radius, largest);
-    const double margin = radius + 2.0 * beside + kCandidateSlack * (largest + radius);
-    box_.lower -= Vec3{margin, margin, margin};
-    box_.upper += Vec3{margin, margin, margin};
+    box_ = grown(box_, radius + 2.0 * beside + kCandidateSlack * (largest + radius));
 }
 
 bool DeformingSweep::is_supported(SurfaceId surface) const {
     return std::find(supports_.begin(), supports_.end(), surface) != supports_.end();
 }
 
-bool DeformingSweep::comes_near(const MovingTriangle& triangle) const {
-    Box3 box;
-    for (const MovingPoint& corner : triangle.corners) {
-        box.include(corner.from);
-        box.include(corner.to);
-    }
-    return BoxTree::meet(box, box_);
-}
+bool DeformingSweep::comes_near(const MovingTriangle& triangle) const { return overlap(box_of(triangle), box_); }
 
 /// Returns the radius with which segments are certified. Supporting surfaces, and surfaces overlapped from the start,
 /// block only segments that intersect them.
@@ -59,24 +51,23 @@ double DeformingSweep::certified_radius(SurfaceId surface, const MovingTriangle&
 std::optional<DeformingSweep::Hit> DeformingSweep::hit_at(SurfaceId surface, const MovingTriangle& triangle,
                                                           const Meeting& meeting) const {
     const double time = meeting.part * path_.duration;
-    const auto [a, b, c] = corners_of(triangle, meeting.part);
+    const DeformedTriangle then = deformed_at(triangle, meeting.part);
+    const auto& [a, b, c] = then;
     const Vec3 p = path_.position(time);
     const ClosestPointOnTriangle closest = closest_point_on_triangle(p, a, b, c);
     const Vec3 weights = barycentric_coordinates(closest, a, b, c);
     // The corner velocities come from the keys, because differences over a short piece of the path are mostly rounding.
-    const auto [u, v, w] = deforming_.corner_velocities(surface, 0.5 * times_.begin + 0.5 * times_.end);
+    const double middle = 0.5 * times_.begin + 0.5 * times_.end;
+    const auto [u, v, w] = deforming_.mesh_with(surface).corner_velocities(surface, middle);
     const Vec3 relative = path_.velocity(time) - (weights.x * u + weights.y * v + weights.z * w);
-    const bool is_degenerate = are_collinear(a, b, c);
+    // A triangle without area has no normal for a point, nor for a sphere whose centre is on it.
+    if (are_collinear(a, b, c) && (radius_ == 0.0 || closest.offset == Vec3{})) return std::nullopt;
     if (radius_ > 0.0) {
-        const CollisionWorld::Nearest nearest =
-            is_degenerate
-                ? CollisionWorld::Nearest{normalized(closest.offset), std::sqrt(closest.distance_squared), false, true}
-                : CollisionWorld::nearest(TrianglePlane(a, b, c), p);
+        const CollisionWorld::Nearest nearest = then.nearest(p);
         if (!(dot(nearest.normal, relative) < 0.0)) return std::nullopt;
         return Hit{time, {surface, nearest.normal, nearest.flat}};
     }
-    if (is_degenerate) return std::nullopt;
-    const Vec3 normal = static_cast<double>(meeting.side) * unit_normal(a, b, c);
+    const Vec3 normal = static_cast<double>(meeting.side) * then.unit_normal();
     if (!(dot(normal, relative) < -kDeformingGraze * length(relative))) return std::nullopt;
     return Hit{time, {surface, normal, true}};
 }
@@ -89,9 +80,9 @@ std::optional<DeformingSweep::Hit> DeformingSweep::meet(SurfaceId surface, const
     if (radius == 0.0) {
         // A point that leaves the triangle is not hit again at once. The certificate finds hits that this short time
         // hides.
-        const auto [a, b, c] = corners_of(triangle, 0.0);
-        const bool touches = distance <= kTouchingOffsets * deforming_.offset_of(surface);
-        if (touches && !hit_at(surface, triangle, {0.0, orient3d(a, b, c, path_.c[0])})) from = kShortLeave;
+        const bool touches = distance <= kTouchingOffsets * deforming_.mesh_with(surface).offset();
+        if (touches && !hit_at(surface, triangle, {0.0, deformed_at(triangle, 0.0).side_of(path_.c[0])}))
+            from = kShortLeave;
     } else if (distance <= radius) {
         if (const auto hit = hit_at(surface, triangle, {})) return hit;
         radius = kNearerLink * distance;

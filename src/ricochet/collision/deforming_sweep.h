@@ -33,7 +33,7 @@ public:
     [[nodiscard]] std::optional<Contact> first_contact(std::span<const SurfaceId> triangles, const Near& near) const {
         std::vector<Hit> hits;
         for (const SurfaceId surface : triangles) {
-            const MovingTriangle triangle = deforming_.between(surface, times_.begin, times_.end);
+            const MovingTriangle triangle = deforming_.mesh_with(surface).between(surface, times_.begin, times_.end);
             if (!comes_near(triangle)) continue;
             near(SurfacesInOtherFrames::Deforming{surface, certified_radius(surface, triangle)});
             if (is_supported(surface)) continue;

@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
@@ -17,11 +18,6 @@ namespace ricochet {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-bool meet(const Box3& a, const Box3& b) {
-    return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y && b.lower.y <= a.upper.y &&
-           a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
-}
 
 /// Number of bodies per block of parallel work that bounds motions.
 constexpr std::size_t kBodiesInBlock = 32;
@@ -59,11 +55,8 @@ Box3 placed(const MovingPose& pose, const Box3& box) {
     return {center - reach, center + reach};
 }
 
-void grow(Box3& box, double by) {
-    const double rounding = kSweptBoxRounding * std::max(max_abs(box.lower), max_abs(box.upper));
-    const double all = by + rounding;
-    box.lower -= Vec3{all, all, all};
-    box.upper += Vec3{all, all, all};
+Box3 grown_with_rounding(const Box3& box, double by) {
+    return grown(box, by + kSweptBoxRounding * std::max(max_abs(box.lower), max_abs(box.upper)));
 }
 
 }  // namespace
@@ -83,22 +76,17 @@ Box3 swept_box(const FrameTree& frames, std::size_t frame, const Box3& box, doub
         const double h = to - from;
         const double by_acceleration = (bounds.origin[2] + reach * bounds.rotation[2]) * h * h / 8.0;
         const double by_speed = (bounds.origin[1] + reach * bounds.rotation[1]) * h / 2.0;
-        grow(part, std::min(by_acceleration, by_speed));
-        all.include(part);
+        all.include(grown_with_rounding(part, std::min(by_acceleration, by_speed)));
         if (!(to > from)) break;
         from = to;
     }
     return all;
 }
 
-MovingColliders::MovingColliders(const CollisionWorld& at_rest, const std::shared_ptr<ColliderList>& colliders,
-                                 std::shared_ptr<const FrameTree> frames, double chord_margin)
-    : at_rest_(at_rest),
-      colliders_(colliders),
-      frames_(std::move(frames)),
-      deforming_(colliders),
-      step_(next_step_of_any()) {
-    for (const ColliderDescription& collider : colliders->all()) {
+MovingColliders::MovingColliders(const CollisionWorld& at_rest, std::shared_ptr<const FrameTree> frames,
+                                 double chord_margin)
+    : at_rest_(at_rest), frames_(std::move(frames)), deforming_(at_rest.list()), step_(next_step_of_any()) {
+    for (const ColliderDescription& collider : at_rest.colliders()) {
         if (collider.frame.empty()) {
             body_of_collider_.push_back(kWorldBody);
             continue;
@@ -112,12 +100,13 @@ MovingColliders::MovingColliders(const CollisionWorld& at_rest, const std::share
         body_of_collider_.push_back(static_cast<BodyId>(known - bodies_.begin()));
         if (known != bodies_.end()) continue;
         bodies_.push_back(
-            {std::make_unique<CollisionWorld>(colliders, collider.frame, chord_margin), *frame, {}, {}, {}, {}});
+            {std::make_unique<CollisionWorld>(at_rest.list(), collider.frame, chord_margin), *frame, {}, {}, {}, {}});
         bodies_.back().is_driven = frames_->description(*frame).is_driven;
     }
-    for (std::size_t mesh = 0; mesh < deforming_.size(); ++mesh) {
-        body_of_collider_[deforming_.collider_of(mesh)] = static_cast<BodyId>(bodies_.size() + mesh);
+    for (std::size_t mesh = 0; mesh < deforming_.all().size(); ++mesh) {
+        body_of_collider_[deforming_.all()[mesh].collider()] = static_cast<BodyId>(bodies_.size() + mesh);
     }
+    if (bodies_.empty() && deforming_.empty()) body_of_collider_.clear();
 }
 
 void MovingColliders::prepare_radius(double radius) {
@@ -142,11 +131,20 @@ const MovingPose& MovingColliders::pose_of(BodyId body, double time) const {
 }
 
 void MovingColliders::begin_step(double begin, double end) {
+    if (empty()) return;
     begin_ = begin;
     end_ = end;
     step_ = next_step_of_any();
     parallel_for_blocks(bodies_.size(), kBodiesInBlock, [&](std::size_t, std::size_t first, std::size_t last) {
-        for (std::size_t k = first; k < last; ++k) sweep(bodies_[k]);
+        for (std::size_t k = first; k < last; ++k) {
+            Body& body = bodies_[k];
+            body.at_begin = frames_->at(body.frame, begin);
+            body.at_end = frames_->at(body.frame, end);
+            body.bounds = frames_->bounds(body.frame, begin, end);
+            body.swept = body.world->planes().empty()
+                             ? swept_box(*frames_, body.frame, body.world->bounds(), begin, end)
+                             : everywhere();
+        }
     });
     bounded_.clear();
     unbounded_.clear();
@@ -161,24 +159,16 @@ void MovingColliders::begin_step(double begin, double end) {
     deforming_.begin_step(begin, end);
 }
 
-void MovingColliders::sweep(Body& body) const {
-    body.at_begin = frames_->at(body.frame, begin_);
-    body.at_end = frames_->at(body.frame, end_);
-    body.bounds = frames_->bounds(body.frame, begin_, end_);
-    body.swept = body.world->planes().empty() ? swept_box(*frames_, body.frame, body.world->bounds(), begin_, end_)
-                                              : everywhere();
-}
-
 bool MovingColliders::stays_out(BodyId body, const Box3& box) const {
-    if (body != kWorldBody) return !meet(bodies_[body].swept, box);
-    return at_rest_.planes().empty() && (at_rest_.empty() || !meet(at_rest_.bounds(), box));
+    if (body != kWorldBody) return !overlap(bodies_[body].swept, box);
+    return at_rest_.planes().empty() && (at_rest_.empty() || !overlap(at_rest_.bounds(), box));
 }
 
 void MovingColliders::near(const Box3& box, BodyId except, std::vector<BodyId>& out) const {
     if (except != kWorldBody && !stays_out(kWorldBody, box)) out.push_back(kWorldBody);
     const auto before = static_cast<std::ptrdiff_t>(out.size());
     for (const BodyId body : unbounded_) {
-        if (body != except && meet(bodies_[body].swept, box)) out.push_back(body);
+        if (body != except && overlap(bodies_[body].swept, box)) out.push_back(body);
     }
     swept_.near(box, [&](std::uint32_t k) {
         if (bounded_[k] != except) out.push_back(bounded_[k]);
@@ -195,19 +185,19 @@ void MovingColliders::near_at(const Box3& box, double time, std::vector<BodyId>&
 }
 
 bool MovingColliders::all_stay_out(const Box3& box) const {
-    const auto meets = [&](BodyId body) { return meet(bodies_[body].swept, box); };
+    const auto meets = [&](BodyId body) { return overlap(bodies_[body].swept, box); };
     return std::none_of(unbounded_.begin(), unbounded_.end(), meets) && !swept_.has_near(box) &&
            deforming_.stay_out(box);
 }
 
 const MotionBounds& MovingColliders::bounds(BodyId body) const {
     static const MotionBounds at_rest{};
-    return body == kWorldBody || is_deforming(body) ? at_rest : bodies_[body].bounds;
+    return has_frame(body) ? bodies_[body].bounds : at_rest;
 }
 
 double MovingColliders::next_key(BodyId body, double time) const {
     if (is_deforming(body)) return deforming_.next_key(time);
-    return body == kWorldBody ? kInfinity : frames_->next_key(bodies_[body].frame, time);
+    return has_frame(body) ? frames_->next_key(bodies_[body].frame, time) : kInfinity;
 }
 
 std::optional<double> MovingColliders::next_jump(BodyId body, double from, double until) const {
@@ -227,7 +217,7 @@ std::optional<double> MovingColliders::next_jump(BodyId body, double from, doubl
 }
 
 Vec3 MovingColliders::turning_beside_path(BodyId body, double time) const {
-    if (body >= bodies_.size() || !bodies_[body].angular_momentum) return {};
+    if (!has_frame(body) || !bodies_[body].angular_momentum) return {};
     const MovingPose at = pose(body, time);
     return bodies_[body].mobility->seen_by(at.world_from_frame).of_inertia * *bodies_[body].angular_momentum -
            at.angular_velocity;

@@ -1,9 +1,9 @@
 /// \file
-/// Moving colliders of a scene: the colliders of each frame in its coordinates, and the motion of the frame.
+/// Bodies of a scene: the colliders of each frame in its coordinates, and the motion of the frame.
 ///
 /// In its own frame a collider never moves, so every predicate and hierarchy works there. Only the path of a particle
-/// changes: y(t) = M(t)^-1 x(t). MovingPose::image() defines the local position of a stored position x at a time t. No
-/// crossing is lost between the two coordinates, because all tests use this definition.
+/// changes: y(t) = M(t)^-1 x(t). MovingPose::local_position() defines the local position of a stored position x at a
+/// time t. No crossing is lost between the two coordinates, because all tests use this definition.
 #pragma once
 
 #include <cstdint>
@@ -26,19 +26,21 @@ using BodyId = std::uint32_t;
 /// The world body: all colliders at rest.
 inline constexpr BodyId kWorldBody = 0xFFFFFFFFU;
 
-/// All bodies of a scene. Queries are safe from any number of threads, but not during begin_step() and
-/// prepare_radius().
+/// All bodies of a scene: the world body and the moving bodies. Queries are safe from any number of threads, but not
+/// during begin_step() and prepare_radius().
 class MovingColliders {
 public:
-    /// `at_rest` is the world body of the same list. `frames` must contain all frames that the list names. Both must
-    /// outlive the object. Throws InputError like CollisionWorld, and for a frame that does not exist.
-    MovingColliders(const CollisionWorld& at_rest, const std::shared_ptr<ColliderList>& colliders,
-                    std::shared_ptr<const FrameTree> frames, double chord_margin);
+    /// `at_rest` is the world body. `frames` must contain all frames that its list names. Both must outlive the object.
+    /// Throws InputError like CollisionWorld, and for a frame that does not exist.
+    explicit MovingColliders(const CollisionWorld& at_rest, std::shared_ptr<const FrameTree> frames = nullptr,
+                             double chord_margin = kChordMargin);
 
     [[nodiscard]] const std::shared_ptr<const FrameTree>& frames() const { return frames_; }
+    /// Returns true if all colliders are at rest.
+    [[nodiscard]] bool empty() const { return body_of_collider_.empty(); }
     /// Returns the number of bodies with a frame. They are numbered first, and deforming meshes follow.
     [[nodiscard]] std::size_t size() const { return bodies_.size(); }
-    [[nodiscard]] bool empty() const { return bodies_.empty() && deforming_.empty(); }
+    [[nodiscard]] bool has_frame(BodyId body) const { return body < bodies_.size(); }
     /// Returns the deforming meshes. They have world coordinates, so their pose() is the pose at rest.
     [[nodiscard]] const DeformingColliders& deforming() const { return deforming_; }
     [[nodiscard]] bool is_deforming(BodyId body) const { return body != kWorldBody && body >= bodies_.size(); }
@@ -48,18 +50,20 @@ public:
     }
     /// Returns the body of a surface.
     [[nodiscard]] BodyId body_of(SurfaceId surface) const {
-        return body_of_collider_[colliders_->collider_of(surface)];
+        return empty() ? kWorldBody : body_of_collider_[at_rest_.list()->collider_of(surface)];
     }
-    [[nodiscard]] BodyId body_of_collider(std::size_t collider) const { return body_of_collider_[collider]; }
+    [[nodiscard]] BodyId body_of_collider(std::size_t collider) const {
+        return empty() ? kWorldBody : body_of_collider_[collider];
+    }
     /// Returns the frame of a body.
     [[nodiscard]] std::size_t frame_of(BodyId body) const { return bodies_[body].frame; }
     /// Returns the pose of a body at a time, in s, and its motion at that time.
     [[nodiscard]] MovingPose pose(BodyId body, double time) const {
-        return body == kWorldBody || is_deforming(body) ? MovingPose{} : pose_of(body, time);
+        return has_frame(body) ? pose_of(body, time) : MovingPose{};
     }
     /// Converts a position of the world to a body's coordinates at a time, in s.
     [[nodiscard]] Vec3 local_position(BodyId body, const Vec3& world, double time) const {
-        return body == kWorldBody || is_deforming(body) ? world : pose_of(body, time).local_position(world);
+        return has_frame(body) ? pose_of(body, time).local_position(world) : world;
     }
     /// See CollisionWorld::prepare_radius().
     void prepare_radius(double radius);
@@ -97,15 +101,13 @@ public:
     /// Returns the difference of the angular velocity of a free body at a time, in s, from that of its path, in rad/s.
     /// The path has the angular velocity of its middle throughout. Impacts with that value would not conserve energy.
     [[nodiscard]] Vec3 turning_beside_path(BodyId body, double time) const;
-    [[nodiscard]] bool is_dynamic(BodyId body) const {
-        return body < bodies_.size() && bodies_[body].mobility.has_value();
-    }
+    [[nodiscard]] bool is_dynamic(BodyId body) const { return has_frame(body) && bodies_[body].mobility.has_value(); }
     /// Returns the mobility of a dynamic body at a time, in s, in world coordinates. Requires is_dynamic().
     [[nodiscard]] Mobility mobility(BodyId body, double time) const {
         return bodies_[body].mobility->seen_by(pose(body, time).world_from_frame);
     }
     /// Returns true if impulses have changed the body's velocity at the start of this step or substep.
-    [[nodiscard]] bool has_jumped(BodyId body) const { return body < bodies_.size() && bodies_[body].has_jumped; }
+    [[nodiscard]] bool has_jumped(BodyId body) const { return has_frame(body) && bodies_[body].has_jumped; }
 
 private:
     struct Body {
@@ -121,14 +123,12 @@ private:
         bool is_driven = false;
     };
 
-    void sweep(Body& body) const;
     [[nodiscard]] const MovingPose& pose_of(BodyId body, double time) const;
 
     const CollisionWorld& at_rest_;
-    std::shared_ptr<ColliderList> colliders_;
     std::shared_ptr<const FrameTree> frames_;
     std::vector<Body> bodies_;
-    std::vector<BodyId> body_of_collider_;
+    std::vector<BodyId> body_of_collider_;  ///< empty if all colliders are at rest
     DeformingColliders deforming_;
     BoxTree swept_;                  ///< boxes of the bodies in bounded_ during the step
     std::vector<BodyId> bounded_;    ///< bodies with finite boxes

@@ -1,11 +1,11 @@
-// Division of a MovingSweep's path into pieces.
+#include "ricochet/collision/moving_pieces.h"
+
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
-#include "ricochet/collision/broad_phase.h"
-#include "ricochet/collision/moving_sweep.h"
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/sweep/pair_sweep.h"
 
 namespace ricochet {
 namespace {
@@ -18,39 +18,137 @@ constexpr double kLeastPart = 0x1p-45;
 /// kHermiteError times the largest fourth derivative. Local: a bound of this interpolation.
 constexpr double kHermiteError = 384.0;
 
-/// Largest length, relative to a fine piece, of the rest of a path that is still taken as one fine piece. It covers
-/// rounding. Local: it covers rounding, and only the cost depends on it.
-constexpr double kAlmostOne = 1.0 + 1e-9;
-
-/// Largest length of a piece without contacts, in fine pieces. The error of its cubic is larger by the fourth power of
-/// this number. Local, because boxes are enlarged by that error, so only the cost depends on it.
-constexpr double kLongestPiece = 16.0;
-
-/// Largest number of fine pieces in sequence before a longer one is tried again.
-constexpr int kMostFinePieces = 64;
+/// Returns bounds of the derivatives of a path.
+DerivativeBounds bounds_of(const Path& path) {
+    const double t = path.duration;
+    const double second = length(path.c[2]);
+    const double third = length(path.c[3]);
+    DerivativeBounds bounds{};
+    bounds[3] = 6.0 * third;
+    bounds[2] = 2.0 * second + 6.0 * t * third;
+    bounds[1] = length(path.c[1]) + t * (2.0 * second + 3.0 * t * third);
+    bounds[0] = length(path.c[0]) + t * bounds[1];
+    return bounds;
+}
 
 }  // namespace
 
+Box3 reach_of(const Path& path, double radius) {
+    const Box3 box = box_of(path, path.duration);
+    return grown(box, radius + kCandidateSlack * (std::max(max_abs(box.lower), max_abs(box.upper)) + radius));
+}
+
+double longest_cubic(double error, double fourth) { return std::sqrt(std::sqrt(kHermiteError * error / fourth)); }
+
+MovingPieces::MovingPieces(const SurfacesInTime& surfaces, const ContactQuery& query, const PathPoint& start,
+                           ContactScratch& scratch)
+    : surfaces_(surfaces), query_(query), start_(start), scratch_(scratch), lists_(std::exchange(scratch.sweep, {})) {
+    find_bodies();
+    double tolerance = 0.0;
+    for (const NearBody& body : lists_.bodies) tolerance = std::max(tolerance, body.tolerance);
+    beside_ = 4.0 * tolerance + rounding();
+    cut();
+}
+
+/// Finds the bodies near the path, by the path's box in the world. A path in the frame of a body has a box of all
+/// positions that it can reach.
+void MovingPieces::find_bodies() {
+    const MovingColliders& bodies = surfaces_.bodies();
+    Box3 box = reach_of(query_.path, query_.radius);
+    if (surfaces_.reference() != kWorldBody) {
+        const double from_origin = largest_coordinate(query_.path) + query_.radius;
+        // Between the ends the frame moves by no more than its speed allows.
+        const MotionBounds& bounds = bodies.bounds(surfaces_.reference());
+        const double path_length = query_.path.duration * (bounds.origin[1] + bounds.rotation[1] * 2.0 * from_origin +
+                                                           bounds_of(query_.path)[1]);
+        const double margin = path_length + query_.radius + kCandidateSlack * (max_abs(start_.world) + query_.radius);
+        box = ball_box(start_.world, margin);
+    }
+    lists_.near.clear();
+    lists_.bodies.clear();
+    bodies.near(box, surfaces_.reference(), lists_.near);
+    for (const BodyId body : lists_.near) lists_.bodies.push_back({body, tolerance_in(body), 0.0, 0.0, {}});
+    if (!bodies.deforming().empty()) find_deforming(box);
+}
+
+/// Finds the deforming triangles near the path, and near all positions beside the path that can be tried.
+void MovingPieces::find_deforming(const Box3& box) {
+    const DeformingColliders& deforming = surfaces_.bodies().deforming();
+    deforming_offset_ = deforming.offset_in(box);
+    if (deforming_offset_ == 0.0) return;
+    double by = rounding() + query_.beside;
+    for (const NearBody& body : lists_.bodies) by += 8.0 * body.tolerance;
+    deforming.near(grown(box, 8.0 * by), deforming_);
+    if (deforming_.empty()) deforming_offset_ = 0.0;
+}
+
+/// Returns a bound of the path's fourth derivative in the coordinates of a body, in m/s^4. `world`: bounds of its
+/// derivatives in the world.
+double MovingPieces::fourth_derivative(BodyId body, const DerivativeBounds& world) const {
+    const MovingColliders& bodies = surfaces_.bodies();
+    const MotionBounds& frame = bodies.bounds(body);
+    DerivativeBounds relative = world;
+    for (std::size_t n = 1; n < relative.size(); ++n) relative[n] += frame.origin[n];
+    const Vec3 origin = bodies.pose(body, surfaces_.clock().begin).world_from_frame.translation;
+    relative[0] = length(start_.world - origin) + relative[1] * query_.path.duration;
+    return product(frame.rotation, relative)[4];
+}
+
+double MovingPieces::tolerance_in(BodyId body) const {
+    const CollisionWorld& world = surfaces_.bodies().world(body);
+    const Vec3 at = surfaces_.local_position(body, start_.world, 0.0);
+    const double size = std::max(max_abs(at), query_.radius);
+    double tolerance = kMovingPathTolerance * size;
+    if (!world.triangles().empty()) {
+        const TriangleBvh& bvh = world.bvh_for(query_.radius);
+        tolerance = std::min(tolerance, (bvh.margin() - query_.radius) / 64.0);
+    }
+    return std::max(tolerance, kSmallestContactOffset);
+}
+
+double MovingPieces::tolerance_of(BodyId body) const {
+    const auto found =
+        std::find_if(lists_.bodies.begin(), lists_.bodies.end(), [&](const NearBody& near) { return near.id == body; });
+    return found == lists_.bodies.end() ? tolerance_in(body) : found->tolerance;
+}
+
+/// Returns the deviation of local positions from the path in a frame, and of safe positions from the path, in m. It
+/// comes from rounding of the world's coordinates and of the frames' origins.
+double MovingPieces::rounding() const {
+    Vec3 largest = abs(start_.world) + abs(query_.path.end - query_.path.c[0]);
+    const MovingColliders& bodies = surfaces_.bodies();
+    const PathClock& clock = surfaces_.clock();
+    const auto include = [&](BodyId body) {
+        if (!bodies.has_frame(body)) return;
+        largest = max(largest, abs(bodies.pose(body, clock.begin).world_from_frame.translation));
+        const double path_length = bodies.bounds(body).origin[1] * (clock.end - clock.begin);
+        largest += Vec3{path_length, path_length, path_length};
+    };
+    include(surfaces_.reference());
+    for (const NearBody& body : lists_.bodies) include(body.id);
+    return kLargestContactOffsetUlps / kContactOffsetUlps * std::max(contact_offset(largest), deforming_offset_);
+}
+
 /// Cuts the path at the keys of all bodies nearby, and evenly between the keys.
-void MovingSweep::cut() {
+void MovingPieces::cut() {
     const double duration = query_.path.duration;
-    const PathClock& clock = view_.clock();
-    if (view_.reference() == kWorldBody && lists_.near.empty() && deforming_.empty()) {
+    const PathClock& clock = surfaces_.clock();
+    if (surfaces_.reference() == kWorldBody && lists_.bodies.empty() && deforming_.empty()) {
         lists_.cuts.assign({0.0, duration});
         return;
     }
     std::vector<double>& keys = lists_.keys;
     keys.assign(1, 0.0);
     const auto add_keys = [&](BodyId body) {
-        double key = view_.bodies().next_key(body, clock.begin);
+        double key = surfaces_.bodies().next_key(body, clock.begin);
         for (int count = 0; count < kMostKeysInStep && key < clock.end;
-             ++count, key = view_.bodies().next_key(body, key)) {
+             ++count, key = surfaces_.bodies().next_key(body, key)) {
             const double at = key - clock.base - clock.offset;
             if (at > 0.0 && at < duration) keys.push_back(at);
         }
     };
-    add_keys(view_.reference());
-    for (const BodyId body : lists_.near) add_keys(body);
+    add_keys(surfaces_.reference());
+    for (const NearBody& body : lists_.bodies) add_keys(body.id);
     for (const double key : deforming_keys()) keys.push_back(path_time_of(key));
     keys.push_back(duration);
     std::sort(keys.begin(), keys.end());
@@ -65,94 +163,43 @@ void MovingSweep::cut() {
     set_times();
 }
 
-void MovingSweep::find_rates() {
-    lists_.fourth.clear();
-    rate_ = 0.0;
-    if (lists_.near.empty() && deforming_.empty()) return;
-    const DerivativeBounds world = world_bounds();
-    const auto rate_of = [](double fourth, double tolerance) {
-        return std::sqrt(std::sqrt(fourth / (kHermiteError * tolerance)));
+void MovingPieces::find_rates() {
+    if (lists_.bodies.empty() && deforming_.empty()) return;
+    const MotionBounds& frame = surfaces_.bodies().bounds(surfaces_.reference());
+    DerivativeBounds world = product(frame.rotation, bounds_of(query_.path));
+    for (std::size_t n = 1; n < world.size(); ++n) world[n] += frame.origin[n];
+    const auto include = [&](double fourth, double tolerance) {
+        rate_ = std::max(rate_, std::sqrt(std::sqrt(fourth / (kHermiteError * tolerance))));
     };
-    for (const BodyId body : lists_.near) {
-        lists_.fourth.push_back(fourth_derivative(body, world));
-        rate_ = std::max(rate_, rate_of(lists_.fourth.back(), tolerance_of(body)));
+    for (NearBody& body : lists_.bodies) {
+        body.fourth = fourth_derivative(body.id, world);
+        include(body.fourth, body.tolerance);
     }
-    if (view_.reference() != kWorldBody && !deforming_.empty()) {
-        rate_ = std::max(rate_, rate_of(fourth_derivative(kWorldBody, world), tolerance_of(kWorldBody)));
+    if (surfaces_.reference() != kWorldBody && !deforming_.empty()) {
+        include(fourth_derivative(kWorldBody, world), tolerance_of(kWorldBody));
     }
 }
 
-double MovingSweep::pieces_within(double span) const {
+double MovingPieces::count_within(double span) const {
     return std::clamp(std::ceil(span * rate_), 1.0, kMostMovingPieces);
 }
 
-void MovingSweep::cut_finely() {
+void MovingPieces::cut_finely() {
     const std::vector<double> keys = std::exchange(lists_.cuts, {0.0});
     for (std::size_t k = 1; k < keys.size(); ++k) {
         const double span = keys[k] - keys[k - 1];
-        const double count = pieces_within(span);
+        const double count = count_within(span);
         for (double i = 1.0; i < count; ++i) lists_.cuts.push_back(keys[k - 1] + span * (i / count));
         lists_.cuts.push_back(keys[k]);
     }
 }
 
-/// Returns the end of the next piece, in s along the path: the next cut, or before it the end of a fine piece or of a
-/// longer piece without contacts.
-double MovingSweep::end_of_piece(const PathPoint& start) {
-    is_clear_ = false;
-    const double cut = lists_.cuts[next_];
-    if (!deforming_.empty()) return cut;
-    const double whole = cut - lists_.cuts[next_ - 1];
-    const double fine = whole / pieces_within(whole);
-    if (!(cut - begin_ > kAlmostOne * fine)) return cut;
-    if (fine_left_ == 0) {
-        const double clear = clear_until(start, fine);
-        is_clear_ = clear > begin_;
-        if (is_clear_) return clear;
-        fine_left_ = fine_after_next_;
-        fine_after_next_ = std::min(2 * fine_after_next_, kMostFinePieces);
-    }
-    --fine_left_;
-    return begin_ + fine;
-}
-
-/// Returns the time, in s along the path, until which no surface of other frames comes near it. If that is within less
-/// than a fine piece, returns the start of the piece. The search extends as far as the errors of the cubics are within
-/// the margins of all bodies' boxes.
-double MovingSweep::clear_until(const PathPoint& start, double fine) {
-    double longest = kLongestPiece * fine;
-    std::vector<double>& besides = lists_.besides;
-    besides.clear();
-    for (std::size_t k = 0; k < lists_.near.size(); ++k) {
-        const CollisionWorld& world = view_.bodies().world(lists_.near[k]);
-        double error = kLongestPiece * kLongestPiece * kLongestPiece * kLongestPiece * lists_.tolerances[k];
-        if (!world.triangles().empty()) {
-            error = std::min(error, (world.bvh_for(query_.radius).margin() - query_.radius) / 32.0);
-        }
-        longest = std::min(longest, std::sqrt(std::sqrt(kHermiteError * error / lists_.fourth[k])));
-        // The pieces cut from it can deviate as much from the true path, on its other side.
-        besides.push_back(beside_in_bodies() + 2.0 * error);
-    }
-    if (!(longest >= 2.0 * fine)) return begin_;
-    set_piece(std::min(lists_.cuts[next_], begin_ + longest), start);
-    const MovingView view(view_.bodies(), view_.reference(), clock_);
-    double clear = piece_.duration;
-    lists_.clear.clear();
-    for (std::size_t k = 0; k < lists_.near.size() && clear > 0.0; ++k) {
-        const CollisionWorld& world = view.bodies().world(lists_.near[k]);
-        const Path& path = lists_.clear.emplace_back(path_in(lists_.near[k], view, {start.position, 0.0, start.world}));
-        const QueryMargins margins(world, path, query_.radius, besides[k]);
-        clear = std::min(clear, time_clear_of(world, margins, path, fine));
-    }
-    return clear < piece_.duration ? begin_ + clear : begin_ + piece_.duration;
-}
-
 /// Returns all keys of deforming meshes within the path's time, in s, if such a mesh is near.
-std::vector<double> MovingSweep::deforming_keys() const {
+std::vector<double> MovingPieces::deforming_keys() const {
     std::vector<double> keys;
     if (deforming_.empty()) return keys;
-    const DeformingColliders& deforming = view_.bodies().deforming();
-    const PathClock& clock = view_.clock();
+    const DeformingColliders& deforming = surfaces_.bodies().deforming();
+    const PathClock& clock = surfaces_.clock();
     for (double key = deforming.next_key(clock.begin); key < clock.end; key = deforming.next_key(key)) {
         keys.push_back(key);
     }
@@ -160,26 +207,32 @@ std::vector<double> MovingSweep::deforming_keys() const {
 }
 
 /// Returns the time along the path of a key. It is inside the path even if rounding would put it at an end.
-double MovingSweep::path_time_of(double key) const {
-    const PathClock& clock = view_.clock();
+double MovingPieces::path_time_of(double key) const {
+    const PathClock& clock = surfaces_.clock();
     const double least = kLeastPart * query_.path.duration;
     return std::clamp(key - clock.base - clock.offset, least, query_.path.duration - least);
 }
 
 /// Sets the simulation times of the cuts. A piece that ends at a key ends exactly at the key's time.
-void MovingSweep::set_times() {
-    const PathClock& clock = view_.clock();
-    const std::vector<double> keys = deforming_keys();
-    times_.clear();
+void MovingPieces::set_times() {
+    const PathClock& clock = surfaces_.clock();
     for (const double cut : lists_.cuts) times_.push_back(clock.at(cut));
     times_.back() = clock.end;
-    for (const double key : keys) {
+    for (const double key : deforming_keys()) {
         const auto at = std::find(lists_.cuts.begin(), lists_.cuts.end(), path_time_of(key)) - lists_.cuts.begin();
         for (std::ptrdiff_t k = 0; k < std::ssize(times_); ++k) {
             double& time = times_[static_cast<std::size_t>(k)];
             time = k < at ? std::min(time, key) : (k > at ? std::max(time, key) : key);
         }
     }
+}
+
+PathClock MovingPieces::clock_of(double from, double to, std::size_t next) const {
+    PathClock clock = surfaces_.clock().piece(from, to);
+    if (times_.empty()) return clock;
+    clock.begin = times_[next - 1];
+    clock.end = times_[next];
+    return clock;
 }
 
 }  // namespace ricochet

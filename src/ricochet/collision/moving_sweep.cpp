@@ -4,18 +4,28 @@
 #include <cmath>
 #include <memory>
 
+#include "ricochet/collision/broad_phase.h"
 #include "ricochet/collision/deforming_sweep.h"
 #include "ricochet/collision/look_ahead.h"
-#include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
-#include "ricochet/geometry/sweep/pair_sweep.h"
 
 namespace ricochet {
 namespace {
 
 /// Number of Newton steps in the search for the true time of an impact. Each squares the error.
 constexpr int kNewtonSteps = 4;
+
+/// Largest length, relative to a fine piece, of the rest of a path that is still taken as one fine piece. It covers
+/// rounding. Local: it covers rounding, and only the cost depends on it.
+constexpr double kAlmostOne = 1.0 + 1e-9;
+
+/// Largest length of a piece without contacts, in fine pieces. The error of its cubic is larger by the fourth power of
+/// this number. Local, because boxes are enlarged by that error, so only the cost depends on it.
+constexpr double kLongestPiece = 16.0;
+
+/// Largest number of fine pieces in sequence before a longer one is tried again.
+constexpr int kMostFinePieces = 64;
 
 /// Returns the piece of a path between two times, with a given start, which may differ by rounding.
 Path piece_of(const Path& path, double from, double to, const Vec3& start) {
@@ -36,156 +46,8 @@ Path straight_path(const Vec3& from, const Vec3& to, double duration) {
     return path;
 }
 
-/// Returns bounds of the derivatives of a path.
-DerivativeBounds bounds_of(const Path& path) {
-    const double t = path.duration;
-    const double second = length(path.c[2]);
-    const double third = length(path.c[3]);
-    DerivativeBounds bounds{};
-    bounds[3] = 6.0 * third;
-    bounds[2] = 2.0 * second + 6.0 * t * third;
-    bounds[1] = length(path.c[1]) + t * (2.0 * second + 3.0 * t * third);
-    bounds[0] = length(path.c[0]) + t * bounds[1];
-    return bounds;
-}
-
-}  // namespace
-
-Box3 reach_of(const Path& path, double radius) {
-    const Box3 box = box_of(path, path.duration);
-    return grown(box, radius + kCandidateSlack * (std::max(max_abs(box.lower), max_abs(box.upper)) + radius));
-}
-
-MovingSweep::MovingSweep(const MovingView& view, const SurfaceGeometry& geometry, const ContactQuery& query,
-                         const PathPoint& start, ContactScratch& scratch)
-    : view_(view),
-      geometry_(geometry),
-      query_(query),
-      start_(start),
-      scratch_(scratch),
-      lists_(std::exchange(scratch.sweep, {})) {
-    find_near();
-    beside_path_ = beside_path();
-    cut();
-}
-
-/// Finds the bodies near the path, by the path's box in the world. A path in the frame of a body has a box of all
-/// positions that it can reach.
-void MovingSweep::find_near() {
-    const MovingColliders& bodies = view_.bodies();
-    Box3 box = reach_of(query_.path, query_.radius);
-    if (view_.reference() != kWorldBody) {
-        const double from_origin = largest_coordinate(query_.path) + query_.radius;
-        box = {};
-        // Between the ends the frame moves by no more than its speed allows.
-        const MotionBounds& bounds = bodies.bounds(view_.reference());
-        const double path_length = query_.path.duration * (bounds.origin[1] + bounds.rotation[1] * 2.0 * from_origin +
-                                                           bounds_of(query_.path)[1]);
-        const double margin = path_length + query_.radius + kCandidateSlack * (max_abs(start_.world) + query_.radius);
-        const Vec3 by{margin, margin, margin};
-        box.include(start_.world - by);
-        box.include(start_.world + by);
-    }
-    lists_.near.clear();
-    lists_.tolerances.clear();
-    bodies.near(box, view_.reference(), lists_.near);
-    for (const BodyId body : lists_.near) lists_.tolerances.push_back(tolerance_in(body));
-    if (!bodies.deforming().empty()) find_deforming(box);
-}
-
-/// Finds the deforming triangles near the path, and near all positions beside the path that can be tried.
-void MovingSweep::find_deforming(const Box3& box) {
-    const DeformingColliders& deforming = view_.bodies().deforming();
-    deforming_offset_ = deforming.offset_in(box);
-    if (deforming_offset_ == 0.0) return;
-    double by = rounding() + query_.beside;
-    for (const BodyId body : lists_.near) by += 8.0 * tolerance_of(body);
-    deforming.near(grown(box, 8.0 * by), deforming_);
-    if (deforming_.empty()) deforming_offset_ = 0.0;
-}
-
-DerivativeBounds MovingSweep::world_bounds() const {
-    const MotionBounds& frame = view_.bodies().bounds(view_.reference());
-    DerivativeBounds bounds = product(frame.rotation, bounds_of(query_.path));
-    for (std::size_t n = 0; n < bounds.size(); ++n) bounds[n] += frame.origin[n];
-    return bounds;
-}
-
-/// Returns a bound of the path's fourth derivative in the coordinates of a body, in m/s^4.
-double MovingSweep::fourth_derivative(BodyId body, const DerivativeBounds& world) const {
-    const MotionBounds& frame = view_.bodies().bounds(body);
-    DerivativeBounds relative = world;
-    for (std::size_t n = 1; n < relative.size(); ++n) relative[n] += frame.origin[n];
-    const Vec3 origin = view_.bodies().pose(body, view_.clock().begin).world_from_frame.translation;
-    relative[0] = length(start_.world - origin) + relative[1] * query_.path.duration;
-    return product(frame.rotation, relative)[4];
-}
-
-/// Returns the largest allowed deviation, in m, of a piece from the true path in the coordinates of a body.
-double MovingSweep::tolerance_in(BodyId body) const {
-    const CollisionWorld& world = view_.bodies().world(body);
-    const Vec3 at = view_.local_position(body, start_.world, 0.0);
-    const double size = std::max(max_abs(at), query_.radius);
-    double tolerance = kMovingPathTolerance * size;
-    if (!world.triangles().empty()) {
-        const TriangleBvh& bvh = world.bvh_for(query_.radius);
-        tolerance = std::min(tolerance, (bvh.margin() - query_.radius) / 64.0);
-    }
-    return std::max(tolerance, kSmallestContactOffset);
-}
-
-/// Returns tolerance_in(body), which is already known for bodies near the path.
-double MovingSweep::tolerance_of(BodyId body) const {
-    const auto found = std::find(lists_.near.begin(), lists_.near.end(), body);
-    if (found == lists_.near.end()) return tolerance_in(body);
-    return lists_.tolerances[static_cast<std::size_t>(found - lists_.near.begin())];
-}
-
-/// Returns the deviation of local positions from the path in a frame, and of safe positions from the path, in m. It
-/// comes from rounding of the world's coordinates and of the frames' origins.
-double MovingSweep::rounding() const {
-    Vec3 largest = abs(start_.world) + abs(query_.path.end - query_.path.c[0]);
-    const auto include = [&](BodyId body) {
-        if (body == kWorldBody) return;
-        const MovingPose pose = view_.bodies().pose(body, view_.clock().begin);
-        largest = max(largest, abs(pose.world_from_frame.translation));
-        const double path_length = view_.bodies().bounds(body).origin[1] * (view_.clock().end - view_.clock().begin);
-        largest += Vec3{path_length, path_length, path_length};
-    };
-    include(view_.reference());
-    for (const BodyId body : lists_.near) include(body);
-    return kLargestContactOffsetUlps / kContactOffsetUlps * std::max(contact_offset(largest), deforming_offset_);
-}
-
-/// Returns the piece in the coordinates of a body.
-Path MovingSweep::path_in(BodyId body, const MovingView& view, const PathPoint& start) const {
-    const PathPoint end = view.point_at(piece_.end, piece_.duration);
-    const Vec3 from = view.local_position(body, start.world, 0.0);
-    const Vec3 to = view.local_position(body, end.world, piece_.duration);
-    const Vec3 leaving = view.velocity_in(body, {start.position, 0.0, start.world}, piece_.velocity(0.0));
-    if (!(piece_.duration > 0.0)) return line_path(from, leaving, 0.0);
-    // If the piece is shorter than the resolution of the clock, the body jumps from one pose to the next. A cubic with
-    // the velocities at both ends would then bend without limit.
-    if (piece_.duration <= ulp(clock_.end)) return straight_path(from, to, piece_.duration);
-    const Vec3 arriving = view.velocity_in(body, end, piece_.velocity(piece_.duration), MovingView::Limit::before);
-    return hermite_path(from, leaving, to, arriving, piece_.duration);
-}
-
-/// Makes a contact found in the frame of a body the first contact if it is earlier, or merges it if it is simultaneous.
-void MovingSweep::take(const Contact& found, BodyId body, const SurfaceGeometry& geometry, const MovingView& view,
-                       std::optional<Contact>& first) const {
-    Contact contact = found;
-    if (body != view.reference()) {
-        find_true_time(contact, body, geometry, view);
-        for (int k = 0; k < contact.count; ++k) {
-            Vec3& normal = contact.surfaces[static_cast<std::size_t>(k)].normal;
-            normal = view.direction_from(body, normal, contact.time);
-        }
-    }
-    merge(contact, first);
-}
-
-void MovingSweep::merge(Contact contact, std::optional<Contact>& first) const {
+/// Makes a contact the first one if it is earlier, or merges it if it is simultaneous.
+void merge(Contact contact, std::optional<Contact>& first) {
     if (!first) {
         first = contact;
         return;
@@ -196,22 +58,160 @@ void MovingSweep::merge(Contact contact, std::optional<Contact>& first) const {
         if (first->count == Contact::kMostSurfaces) break;
         first->surfaces[static_cast<std::size_t>(first->count++)] = surface;
     }
-    const auto surfaces = std::span(first->surfaces).first(static_cast<std::size_t>(first->count));
-    std::sort(surfaces.begin(), surfaces.end(), [](const auto& a, const auto& b) { return a.surface < b.surface; });
+    std::sort(first->surfaces.begin(), first->surfaces.begin() + first->count,
+              [](const auto& a, const auto& b) { return a.surface < b.surface; });
+}
+
+}  // namespace
+
+/// Returns the end of the next piece, in s along the path: the next cut, or before it the end of a fine piece or of a
+/// longer piece without contacts.
+double MovingSweep::end_of_piece(const PathPoint& start) {
+    is_clear_ = false;
+    const double cut = pieces_.cuts()[next_];
+    if (!pieces_.deforming().empty()) return cut;
+    const double whole = cut - pieces_.cuts()[next_ - 1];
+    const double fine = whole / pieces_.count_within(whole);
+    if (!(cut - begin_ > kAlmostOne * fine)) return cut;
+    if (fine_left_ == 0) {
+        const double clear = clear_until(start, fine);
+        is_clear_ = clear > begin_;
+        if (is_clear_) return clear;
+        fine_left_ = fine_after_next_;
+        fine_after_next_ = std::min(2 * fine_after_next_, kMostFinePieces);
+    }
+    --fine_left_;
+    return begin_ + fine;
+}
+
+/// Returns the time, in s along the path, until which no surface of other frames comes near it. If that is within less
+/// than a fine piece, returns the start of the piece. The search extends as far as the errors of the cubics are within
+/// the margins of all bodies' boxes.
+double MovingSweep::clear_until(const PathPoint& start, double fine) {
+    double longest = kLongestPiece * fine;
+    for (MovingPieces::NearBody& body : pieces_.bodies()) {
+        const CollisionWorld& world = surfaces_.bodies().world(body.id);
+        double error = kLongestPiece * kLongestPiece * kLongestPiece * kLongestPiece * body.tolerance;
+        if (!world.triangles().empty()) {
+            error = std::min(error, (world.bvh_for(query_.radius).margin() - query_.radius) / 32.0);
+        }
+        longest = std::min(longest, longest_cubic(error, body.fourth));
+        // The pieces cut from it can deviate as much from the true path, on its other side.
+        body.beside = beside_in_bodies() + 2.0 * error;
+    }
+    if (!(longest >= 2.0 * fine)) return begin_;
+    set_piece(std::min(pieces_.cuts()[next_], begin_ + longest), start);
+    const SurfacesInTime surfaces = at_piece();
+    double clear = piece_.duration;
+    for (MovingPieces::NearBody& body : pieces_.bodies()) {
+        if (!(clear > 0.0)) break;
+        const CollisionWorld& world = surfaces.bodies().world(body.id);
+        body.clear = path_in(body.id, surfaces, {start.position, 0.0, start.world});
+        const QueryMargins margins(world, body.clear, query_.radius, body.beside);
+        clear = std::min(clear, time_clear_of(world, margins, body.clear, fine));
+    }
+    return clear < piece_.duration ? begin_ + clear : begin_ + piece_.duration;
+}
+
+void MovingSweep::set_piece(double to, const PathPoint& start) {
+    piece_ = piece_of(query_.path, begin_, to, start.position);
+    clock_ = pieces_.clock_of(begin_, to, next_);
+}
+
+/// Returns the piece in the coordinates of a body.
+Path MovingSweep::path_in(BodyId body, const SurfacesInTime& surfaces, const PathPoint& start) const {
+    const PathPoint end = surfaces.point_at(piece_.end, piece_.duration);
+    const Vec3 from = surfaces.local_position(body, start.world, 0.0);
+    const Vec3 to = surfaces.local_position(body, end.world, piece_.duration);
+    const Vec3 leaving = surfaces.velocity_in(body, {start.position, 0.0, start.world}, piece_.velocity(0.0));
+    if (!(piece_.duration > 0.0)) return line_path(from, leaving, 0.0);
+    // If the piece is shorter than the resolution of the clock, the body jumps from one pose to the next. A cubic with
+    // the velocities at both ends would then bend without limit.
+    if (piece_.duration <= ulp(clock_.end)) return straight_path(from, to, piece_.duration);
+    const Vec3 arriving =
+        surfaces.velocity_in(body, end, piece_.velocity(piece_.duration), SurfacesInTime::Limit::before);
+    return hermite_path(from, leaving, to, arriving, piece_.duration);
+}
+
+ContactQueryResult MovingSweep::sweep(const PathPoint& start) {
+    const double to = end_of_piece(start);
+    set_piece(to, start);
+    begin_ = to;
+    if (to >= pieces_.cuts()[next_]) ++next_;
+    const SurfacesInTime surfaces = at_piece();
+    const PathPoint first_point{start.position, 0.0, start.world};
+    if (other_frames_) {
+        other_frames_->restart(surfaces, first_point);
+    } else {
+        other_frames_.emplace(surfaces, first_point);
+    }
+    const double beside = query_.beside + pieces_.beside();
+    ContactQueryResult own =
+        find_first_contact(geometry_, {piece_, query_.radius, nullptr, {}, query_.supports, beside}, scratch_);
+    meet_bodies(surfaces, first_point, own.contact);
+    if (!pieces_.deforming().empty()) meet_deforming(surfaces, first_point, own.contact);
+    own.near.join(*other_frames_);
+    return own;
+}
+
+void MovingSweep::meet_bodies(const SurfacesInTime& surfaces, const PathPoint& start, std::optional<Contact>& first) {
+    const std::span<const MovingPieces::NearBody> bodies = pieces_.bodies();
+    while (scratch_.other_frames.size() < bodies.size()) {
+        scratch_.other_frames.push_back(std::make_unique<ContactScratch>());
+    }
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+        ContactScratch& scratch = *scratch_.other_frames[k];
+        const SurfaceGeometry geometry(surfaces.bodies().world(bodies[k].id), scratch.plane_cache);
+        if (is_clear_ && geometry.world().culls()) {
+            scratch.clear();
+            const Path path = shortened(bodies[k].clear, piece_.duration);
+            const QueryMargins margins(geometry.world(), path, query_.radius, bodies[k].beside);
+            other_frames_->add({bodies[k].id, path, {geometry, scratch, margins, path.c[0], CandidateSet::near}});
+            continue;
+        }
+        const Path path = path_in(bodies[k].id, surfaces, start);
+        ContactQueryResult found = find_first_contact(
+            geometry, {path, query_.radius, nullptr, {}, query_.supports, beside_in_bodies()}, scratch);
+        if (found.contact) {
+            find_true_time(*found.contact, bodies[k].id, geometry, surfaces);
+            take(*found.contact, bodies[k].id, surfaces, first);
+        }
+        other_frames_->add({bodies[k].id, path, found.near});
+    }
+}
+
+void MovingSweep::meet_deforming(const SurfacesInTime& surfaces, const PathPoint& start,
+                                 std::optional<Contact>& first) {
+    const Path path = surfaces.reference() == kWorldBody ? piece_ : path_in(kWorldBody, surfaces, start);
+    const DeformingSweep sweep(surfaces.bodies().deforming(), path, {clock_.begin, clock_.end}, query_.radius,
+                               query_.supports, beside_in_bodies());
+    const std::optional<Contact> contact = sweep.first_contact(
+        pieces_.deforming(), [&](const SurfacesInOtherFrames::Deforming& triangle) { other_frames_->add(triangle); });
+    if (contact) take(*contact, kWorldBody, surfaces, first);
+}
+
+/// Takes a contact that was found in the coordinates of a body, or of the world.
+void MovingSweep::take(Contact contact, BodyId body, const SurfacesInTime& surfaces,
+                       std::optional<Contact>& first) const {
+    for (int k = 0; k < contact.count; ++k) {
+        Vec3& normal = contact.surfaces[static_cast<std::size_t>(k)].normal;
+        normal = surfaces.direction_from(body, normal, contact.time);
+    }
+    merge(contact, first);
 }
 
 /// Finds the time of a contact on the true path by Newton's method on the distance. It starts from the time on the
 /// cubic and ends when the distance is below the rounding of the coordinates.
 void MovingSweep::find_true_time(Contact& contact, BodyId body, const SurfaceGeometry& geometry,
-                                 const MovingView& view) const {
+                                 const SurfacesInTime& surfaces) const {
     const SurfaceId surface = contact.first().surface;
     const bool is_sphere = query_.radius > 0.0;
-    const double most = 4.0 * tolerance_of(body);
+    const double most = 4.0 * pieces_.tolerance_of(body);
     double time = contact.time;
     for (int k = 0; k < kNewtonSteps; ++k) {
-        const PathPoint at = view.point_at(piece_.position(time), time);
-        const Vec3 local_position = view.local_position(body, at.world, time);
-        const Vec3 velocity = view.velocity_in(body, at, piece_.velocity(time));
+        const PathPoint at = surfaces.point_at(piece_.position(time), time);
+        const Vec3 local_position = surfaces.local_position(body, at.world, time);
+        const Vec3 velocity = surfaces.velocity_in(body, at, piece_.velocity(time));
         double height = 0.0;
         double rate = 0.0;
         if (is_sphere) {
@@ -231,7 +231,8 @@ void MovingSweep::find_true_time(Contact& contact, BodyId body, const SurfaceGeo
         if (is_there) break;
     }
     contact.time = time;
-    const Vec3 local_position = view.local_position(body, view.point_at(piece_.position(time), time).world, time);
+    const Vec3 local_position =
+        surfaces.local_position(body, surfaces.point_at(piece_.position(time), time).world, time);
     for (int k = 0; k < contact.count; ++k) {
         ContactSurface& touched = contact.surfaces[static_cast<std::size_t>(k)];
         const Vec3 normal = is_sphere ? geometry.nearest(touched.surface, local_position).normal
@@ -240,87 +241,11 @@ void MovingSweep::find_true_time(Contact& contact, BodyId body, const SurfaceGeo
     }
 }
 
-/// Returns the distance from the path, in m, at which positions are queried. It covers the error of the cubics and
-/// rounding.
-double MovingSweep::beside_path() const {
-    double tolerance = 0.0;
-    for (const double one : lists_.tolerances) tolerance = std::max(tolerance, one);
-    return 4.0 * tolerance + rounding();
-}
-
-void MovingSweep::set_piece(double to, const PathPoint& start) {
-    piece_ = piece_of(query_.path, begin_, to, start.position);
-    clock_ = view_.clock().piece(begin_, to);
-    if (times_.empty()) return;
-    clock_.begin = times_[next_ - 1];
-    clock_.end = times_[next_];
-}
-
-ContactQueryResult MovingSweep::sweep(const PathPoint& start) {
-    const double to = end_of_piece(start);
-    set_piece(to, start);
-    begin_ = to;
-    if (to >= lists_.cuts[next_]) ++next_;
-    const MovingView view(view_.bodies(), view_.reference(), clock_);
-    const PathPoint first_point{start.position, 0.0, start.world};
-    if (other_frames_) {
-        other_frames_->restart(view, first_point);
-    } else {
-        other_frames_.emplace(view, first_point);
-    }
-    const double beside = query_.beside + beside_path_;
-    ContactQueryResult own =
-        find_first_contact(geometry_, {piece_, query_.radius, nullptr, {}, query_.supports, beside}, scratch_);
-    meet_bodies(view, first_point, own.contact);
-    if (!deforming_.empty()) meet_deforming(view, first_point, beside_in_bodies(), own.contact);
-    own.near.join(*other_frames_);
-    return own;
-}
-
-void MovingSweep::meet_bodies(const MovingView& view, const PathPoint& start, std::optional<Contact>& first) {
-    const double beside = beside_in_bodies();
-    while (scratch_.other_frames.size() < lists_.near.size())
-        scratch_.other_frames.push_back(std::make_unique<ContactScratch>());
-    for (std::size_t k = 0; k < lists_.near.size(); ++k) {
-        ContactScratch& scratch = *scratch_.other_frames[k];
-        const SurfaceGeometry geometry(view.bodies().world(lists_.near[k]), scratch.plane_cache);
-        if (is_clear_ && geometry.world().culls()) {
-            scratch.clear();
-            const Path path = shortened(lists_.clear[k], piece_.duration);
-            const QueryMargins margins(geometry.world(), path, query_.radius, lists_.besides[k]);
-            other_frames_->add({lists_.near[k], path, {geometry, scratch, margins, path.c[0], CandidateSet::near}});
-            continue;
-        }
-        const Path path = path_in(lists_.near[k], view, start);
-        const ContactQueryResult found =
-            find_first_contact(geometry, {path, query_.radius, nullptr, {}, query_.supports, beside}, scratch);
-        if (found.contact) take(*found.contact, lists_.near[k], geometry, view, first);
-        other_frames_->add({lists_.near[k], path, found.near});
-    }
-}
-
-/// Tests deforming meshes. `beside` has the meaning of ContactQuery::beside.
-void MovingSweep::meet_deforming(const MovingView& view, const PathPoint& start, double beside,
-                                 std::optional<Contact>& first) {
-    const DeformingColliders& deforming = view.bodies().deforming();
-    const Path path = view.reference() == kWorldBody ? piece_ : path_in(kWorldBody, view, start);
-    const DeformingSweep sweep(deforming, path, {clock_.begin, clock_.end}, query_.radius, query_.supports, beside);
-    std::optional<Contact> contact = sweep.first_contact(
-        deforming_, [&](const SurfacesInOtherFrames::Deforming& triangle) { other_frames_->add(triangle); });
-    if (!contact) return;
-    for (int k = 0; k < contact->count; ++k) {
-        Vec3& normal = contact->surfaces[static_cast<std::size_t>(k)].normal;
-        normal = view.direction_from(kWorldBody, normal, contact->time);
-    }
-    merge(*contact, first);
-}
-
 std::optional<Contact> MovingSweep::first_contact() {
-    const MovingView view(view_.bodies(), view_.reference(), view_.clock());
     while (!is_done()) {
         const double from = begin_;
         std::optional<Contact> contact =
-            sweep(from == 0.0 ? start_ : view.point_at(query_.path.position(from), from)).contact;
+            sweep(from == 0.0 ? start_ : surfaces_.point_at(query_.path.position(from), from)).contact;
         if (!contact) continue;
         contact->time += from;
         return contact;

@@ -12,16 +12,6 @@ namespace {
 
 using Hit = ContactScratch::Hit;
 
-/// Removes seams of flat surfaces: edges and vertices that are hit together with a face of the same normal.
-void drop_seams(std::vector<Hit>& hits) {
-    const auto faces_end = std::partition(hits.begin(), hits.end(), [](const Hit& hit) { return hit.flat; });
-    const auto is_seam = [&](const Hit& hit) {
-        return std::any_of(hits.begin(), faces_end,
-                           [&](const Hit& face) { return length_squared(face.normal - hit.normal) < 2.0 * kSeamTurn; });
-    };
-    hits.erase(std::remove_if(faces_end, hits.end(), is_seam), hits.end());
-}
-
 /// Returns the latest time that counts as simultaneous with `first`.
 double latest_with(double first) { return first + kSimultaneousUlps * ulp(first); }
 
@@ -39,10 +29,6 @@ Vec3 facing_normal(const Vec3& normal, int side, const Vec3& v) {
     if (side != 0) return side > 0 ? normal : -normal;
     const double speed = length(v);
     return speed > 0.0 ? v / -speed : normal;
-}
-
-Vec3 facing_normal(const CollisionWorld& world, SurfaceId surface, int side, const Vec3& p, const Vec3& v) {
-    return facing_normal(world.unit_normal_of(surface, p), side, v);
 }
 
 QueryMargins::QueryMargins(const CollisionWorld& world, const Path& path, double radius_in, double beside_in)

@@ -8,7 +8,20 @@
 namespace ricochet {
 namespace {
 
-bool same_normal(const Vec3& a, const Vec3& b) { return length_squared(a - b) < 2.0 * kSeamTurn; }
+/// Tests a segment in the frames of rigid colliders, moving and at rest.
+bool is_free_of_rigid(const MovingColliders& bodies, const StoredPosition& from, const StoredPosition& to,
+                      double radius) {
+    const auto is_free_in = [&](BodyId body) {
+        const CollisionWorld& world = bodies.world(body);
+        if (world.empty()) return true;
+        const Obstacles obstacles(world, bodies.local_position(body, from.position, from.time), radius);
+        return !obstacles.block(bodies.local_position(body, to.position, to.time));
+    };
+    for (BodyId body = 0; body < bodies.size(); ++body) {
+        if (!is_free_in(body)) return false;
+    }
+    return is_free_in(kWorldBody);
+}
 
 }  // namespace
 
@@ -55,7 +68,7 @@ ContactSurface Obstacles::contact_at(SurfaceId surface, const Vec3& p, const Vec
     }
     const double distance = world_.signed_distance_from(surface, p);
     const int side = distance > 0.0 ? 1 : distance < 0.0 ? -1 : world_.side_of_surface(surface, p);
-    return {surface, facing_normal(world_, surface, side, p, v), world_.is_flat(surface)};
+    return {surface, facing_normal(world_.unit_normal_of(surface, p), side, v), world_.is_flat(surface)};
 }
 
 void Obstacles::gather(const Vec3& to, const Vec3& p, const Vec3& v, std::vector<ContactSurface>& out) const {
@@ -64,21 +77,20 @@ void Obstacles::gather(const Vec3& to, const Vec3& p, const Vec3& v, std::vector
         out.push_back(contact_at(surface, p, v));
         return true;
     });
+    drop_seams(out);
     std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.surface < b.surface; });
     out.erase(std::unique(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.surface == b.surface; }),
               out.end());
-    const std::vector<ContactSurface>& all = out;
-    const auto is_seam = [&](const ContactSurface& edge) {
-        return !edge.flat && std::any_of(all.begin(), all.end(), [&](const ContactSurface& face) {
-            return face.flat && same_normal(face.normal, edge.normal);
-        });
-    };
-    // A separate list is needed: erasing in place would compare with elements that have already moved.
-    std::vector<ContactSurface> kept;
-    for (const ContactSurface& surface : all) {
-        if (!is_seam(surface)) kept.push_back(surface);
-    }
-    out.swap(kept);
+}
+
+bool is_segment_free(const MovingColliders& bodies, const StoredPosition& from, const StoredPosition& to,
+                     double radius) {
+    return is_free_of_rigid(bodies, from, to, radius) && bodies.deforming().is_segment_free(from, to, radius);
+}
+
+bool is_late_segment_free(const MovingColliders& bodies, const StoredPosition& from, const StoredPosition& to,
+                          double radius) {
+    return is_free_of_rigid(bodies, from, to, radius) && bodies.deforming().is_late_segment_free(from, to, radius);
 }
 
 }  // namespace ricochet

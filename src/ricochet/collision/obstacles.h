@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ricochet/collision/contact.h"
+#include "ricochet/collision/moving_colliders.h"
 
 namespace ricochet {
 
@@ -38,5 +39,13 @@ private:
     Vec3 from_;
     double radius_;
 };
+
+/// Returns true if no surface blocks a space-time segment of a sphere, or of a point (radius 0). Colliders with a frame
+/// and those at rest are tested as Obstacles does, in their own coordinates. Exact.
+[[nodiscard]] bool is_segment_free(const MovingColliders& bodies, const StoredPosition& from, const StoredPosition& to,
+                                   double radius);
+/// Does the same for a segment of a stalled particle, see DeformingColliders::is_late_segment_free().
+[[nodiscard]] bool is_late_segment_free(const MovingColliders& bodies, const StoredPosition& from,
+                                        const StoredPosition& to, double radius);
 
 }  // namespace ricochet

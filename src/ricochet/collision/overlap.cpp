@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
@@ -31,8 +32,7 @@ void visit_distances(const CollisionWorld& world, const Vec3& center, double wit
 /// Returns the triangles of deforming meshes that come within a distance in this step.
 std::vector<SurfaceId> near_deforming(const MovingColliders& bodies, const Vec3& center, double within) {
     std::vector<SurfaceId> near;
-    const Vec3 by{within, within, within};
-    if (!bodies.deforming().empty()) bodies.deforming().near({center - by, center + by}, near);
+    bodies.deforming().near(ball_box(center, within), near);
     return near;
 }
 
@@ -41,9 +41,8 @@ std::vector<SurfaceId> near_deforming(const MovingColliders& bodies, const Vec3&
 std::vector<BodyId> bodies_near(const MovingColliders& bodies, const Vec3& center, double radius, double time) {
     const double reach =
         radius + kBirthReach * (max_abs(center) + radius) + 2.0 * kTouchingOffsets * contact_offset(center);
-    const Vec3 by{reach, reach, reach};
     std::vector<BodyId> near;
-    bodies.near_at({center - by, center + by}, time, near);
+    bodies.near_at(ball_box(center, reach), time, near);
     return near;
 }
 
@@ -60,18 +59,16 @@ std::optional<Overlap> deepest_overlap(const CollisionWorld& world, const Vec3& 
     return deepest;
 }
 
-std::optional<Overlap> deepest_overlap(const CollisionWorld& at_rest, const MovingColliders* bodies, const Vec3& center,
-                                       double radius, double time) {
-    std::optional<Overlap> deepest = deepest_overlap(at_rest, center, radius);
-    if (bodies == nullptr || !(radius > 0.0) || !is_finite(center)) return deepest;
-    for (const BodyId body : bodies_near(*bodies, center, radius, time)) {
-        const auto overlap =
-            deepest_overlap(bodies->world(body), bodies->pose(body, time).local_position(center), radius);
+std::optional<Overlap> deepest_overlap(const MovingColliders& bodies, const Vec3& center, double radius, double time) {
+    std::optional<Overlap> deepest = deepest_overlap(bodies.world(kWorldBody), center, radius);
+    if (bodies.empty() || !(radius > 0.0) || !is_finite(center)) return deepest;
+    for (const BodyId body : bodies_near(bodies, center, radius, time)) {
+        const auto overlap = deepest_overlap(bodies.world(body), bodies.local_position(body, center, time), radius);
         if (overlap && (!deepest || overlap->distance < deepest->distance)) deepest = overlap;
     }
     const double least = radius - sphere_tolerance(radius, max_abs(center));
-    for (const SurfaceId surface : near_deforming(*bodies, center, radius)) {
-        const double distance = bodies->deforming().nearest(surface, center, time).distance;
+    for (const SurfaceId surface : near_deforming(bodies, center, radius)) {
+        const double distance = bodies.deforming().triangle_at(surface, time).nearest(center).distance;
         if (distance < least && (!deepest || distance < deepest->distance)) deepest = Overlap{surface, distance};
     }
     return deepest;
@@ -101,10 +98,10 @@ std::optional<Vec3> off_bodies(const MovingColliders& bodies, const Vec3& center
     double offset = 0.0;
     const Vec3 position = off.value_or(center);
     for (const SurfaceId surface : near_deforming(bodies, position, 0.0)) {
-        const auto [a, b, c] = bodies.deforming().corners_at(surface, time);
-        if (!point_on_triangle(position, a, b, c)) continue;
-        normal += bodies.deforming().unit_normal_of(surface, time);
-        offset = std::max(offset, bodies.deforming().offset_of(surface));
+        const DeformedTriangle triangle = bodies.deforming().triangle_at(surface, time);
+        if (!point_on_triangle(position, triangle.a, triangle.b, triangle.c)) continue;
+        normal += triangle.unit_normal();
+        offset = std::max(offset, bodies.deforming().mesh_with(surface).offset());
     }
     if (normal != Vec3{}) off = flush_tiny(position + kBirthOffsets * offset * normalized(normal));
     return off;

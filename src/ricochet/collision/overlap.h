@@ -28,10 +28,9 @@ struct Overlap {
 [[nodiscard]] std::vector<BodyId> bodies_near(const MovingColliders& bodies, const Vec3& center, double radius,
                                               double time);
 
-/// Returns the nearest overlapped surface among colliders of all frames, in their positions at a time, in s. `bodies`
-/// is null if no collider moves.
-[[nodiscard]] std::optional<Overlap> deepest_overlap(const CollisionWorld& at_rest, const MovingColliders* bodies,
-                                                     const Vec3& center, double radius, double time);
+/// Returns the nearest overlapped surface among colliders of all frames, in their positions at a time, in s.
+[[nodiscard]] std::optional<Overlap> deepest_overlap(const MovingColliders& bodies, const Vec3& center, double radius,
+                                                     double time);
 
 /// Returns a position beside `center` for a particle that lies exactly on surfaces of bodies at a time, in s. The
 /// position is a few contact offsets away, along the normals of these surfaces. Returns nothing if the particle lies on

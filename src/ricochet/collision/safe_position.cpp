@@ -91,16 +91,6 @@ Vec3 position_at(const NearSurfaces& near, const PathPoint& on_path, const Conta
     return flush_tiny(position + correction);
 }
 
-/// Returns a blocking surface with its normal at p, which faces p. The normal is zero if p lies in its plane.
-ContactSurface facing_surface(const NearSurfaces& near, SurfaceId surface, const PathPoint& p) {
-    if (near.radius() > 0.0) {
-        const auto nearest = near.nearest(surface, p);
-        return {surface, nearest.normal, nearest.flat};
-    }
-    const int side = near.side_of_surface(surface, p);
-    return {surface, static_cast<double>(side) * near.unit_normal_of(surface, p), near.is_flat(surface)};
-}
-
 }  // namespace
 
 CertifiedPath follow_path(const NearSurfaces& near, const Path& path, double until, const Vec3& target,
@@ -136,7 +126,7 @@ SafePosition find_safe_position(const NearSurfaces& near, const Path& path, cons
         const std::optional<SurfaceId> obstacle =
             followed.blocker ? followed.blocker : near.overlap_deepened_by(on_path, followed.reached);
         if (!obstacle) return {followed.reached, false, std::nullopt};
-        const Vec3 normal = facing_surface(near, *obstacle, followed.reached).normal;
+        const Vec3 normal = near.facing_surface(*obstacle, followed.reached).normal;
         if (normal != Vec3{} && normals.add(normal)) continue;
         offset *= kContactOffsetWidening;
         ++attempt;
@@ -152,7 +142,7 @@ std::optional<Vec3> step_off(const NearSurfaces& near, const Vec3& p) {
     Normals normals;
     for (const SurfaceId surface : near.surfaces_at(p)) normals.add(near.geometry().unit_normal_of(surface, p));
     if (normals.count == 0) return std::nullopt;
-    double offset = near.other_frames() == nullptr ? contact_offset(p) : near.offset_at(near.start());
+    double offset = near.offset_at(near.start());
     for (int attempt = 0; attempt < kSafePositionAttempts; ++attempt, offset *= kContactOffsetWidening) {
         const Vec3 position = flush_tiny(p + offset * escape_direction(normals));
         if (length(position - p) > near.slack()) break;
@@ -165,7 +155,7 @@ Contact contact_with_blocker(const NearSurfaces& near, const Path& path, const C
     Contact contact;
     contact.time = followed.reached.time;
     contact.count = 1;
-    contact.surfaces[0] = facing_surface(near, *followed.blocker, followed.reached);
+    contact.surfaces[0] = near.facing_surface(*followed.blocker, followed.reached);
     if (contact.surfaces[0].normal == Vec3{}) {
         const PathPoint& reached = followed.reached;
         contact.surfaces[0].normal =

@@ -1,16 +1,12 @@
 /// \file
-/// Surfaces near a path in other frames than the path's own, and deforming meshes: certificates of space-time segments,
-/// distances and normals.
+/// Surfaces near a path in other frames than the path's own, and deforming meshes: certificates of space-time segments.
 #pragma once
 
 #include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 
 #include "ricochet/collision/contact_query.h"
-#include "ricochet/collision/moving_colliders.h"
-#include "ricochet/collision/path_point.h"
 
 namespace ricochet {
 
@@ -20,7 +16,7 @@ namespace ricochet {
 [[nodiscard]] double offset_for_carrying(const MovingPose& pose, const Vec3& local_position);
 
 /// Results of queries in the frames of other bodies near one path, or near a piece of it. In each frame the path is a
-/// cubic of its own. Stored positions are converted by MovingPose::image().
+/// cubic of its own. Stored positions are converted by MovingPose::local_position().
 class SurfacesInOtherFrames {
 public:
     /// A body near the path.
@@ -37,11 +33,12 @@ public:
 
     /// `start` is the stored start of the path. Bodies are added in ascending order of their queries, triangles in
     /// ascending order of their numbers.
-    SurfacesInOtherFrames(const MovingView& view, const PathPoint& start) : view_(view), start_(start) {}
+    SurfacesInOtherFrames(const SurfacesInTime& surfaces, const PathPoint& start)
+        : surfaces_(surfaces), start_(start) {}
 
     /// Removes all surfaces and begins with another path.
-    void restart(const MovingView& view, const PathPoint& start) {
-        view_ = view;
+    void restart(const SurfacesInTime& surfaces, const PathPoint& start) {
+        surfaces_ = surfaces;
         start_ = start;
         bodies_.clear();
         deforming_.clear();
@@ -50,40 +47,25 @@ public:
     void add(Body body) { bodies_.push_back(std::move(body)); }
     void add(const Deforming& triangle) { deforming_.push_back(triangle); }
 
-    [[nodiscard]] const MovingView& view() const { return view_; }
+    /// Returns all surfaces in the frame and at the times of the path.
+    [[nodiscard]] const SurfacesInTime& surfaces() const { return surfaces_; }
     [[nodiscard]] const PathPoint& start() const { return start_; }
 
-    /// Like is_segment_free(), segment_blocker(), overlap_deepened_by() and covers_chord() of NearSurfaces, for the
-    /// surfaces of other frames.
+    /// Like is_segment_free(), segment_blocker(), overlap_deepened_by(), covers_chord() and offset_at() of
+    /// NearSurfaces, for the surfaces of other frames.
     [[nodiscard]] bool are_free(const PathPoint& p, const PathPoint& q) const;
     [[nodiscard]] std::optional<SurfaceId> blocker(const PathPoint& p, const PathPoint& q) const;
     [[nodiscard]] std::optional<SurfaceId> overlap_deepened_by(const PathPoint& p, const PathPoint& q) const;
     [[nodiscard]] bool cover_chord(double from, double to) const;
-
-    // Functions for surfaces of other frames, with results in the path's own frame.
-    [[nodiscard]] bool is_flat(SurfaceId surface) const;
-    [[nodiscard]] CollisionWorld::Nearest nearest(SurfaceId surface, const PathPoint& p) const;
-    [[nodiscard]] double signed_distance_from(SurfaceId surface, const PathPoint& p) const;
-    [[nodiscard]] Vec3 unit_normal_of(SurfaceId surface, const PathPoint& p) const;
-    [[nodiscard]] int side_of_surface(SurfaceId surface, const PathPoint& p) const;
     [[nodiscard]] double offset_at(const PathPoint& p) const;
 
 private:
     [[nodiscard]] Vec3 local_position(const Body& body, const PathPoint& p) const {
-        return view_.local_position(body.id, p.world, p.time);
+        return surfaces_.local_position(body.id, p.world, p.time);
     }
-    [[nodiscard]] Vec3 local_position_in(SurfaceId surface, const PathPoint& p) const {
-        return view_.local_position(view_.bodies().body_of(surface), p.world, p.time);
-    }
-    [[nodiscard]] const CollisionWorld& world_of(SurfaceId surface) const {
-        return view_.bodies().world(view_.bodies().body_of(surface));
-    }
-    [[nodiscard]] const DeformingColliders& deforming() const { return view_.bodies().deforming(); }
-    [[nodiscard]] bool deforms(SurfaceId surface) const { return deforming().owns(surface); }
-    [[nodiscard]] double time_of(const PathPoint& p) const { return view_.clock().at(p.time); }
     [[nodiscard]] bool is_free(const Deforming& triangle, const PathPoint& p, const PathPoint& q) const;
 
-    MovingView view_;
+    SurfacesInTime surfaces_;
     PathPoint start_;
     std::vector<Body> bodies_;
     std::vector<Deforming> deforming_;

@@ -1,12 +1,12 @@
 #include "ricochet/response/carried_particle.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
 #include "ricochet/collision/clearance.h"
 #include "ricochet/collision/obstacles.h"
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/geometry/sweep/closest_point.h"
@@ -14,32 +14,18 @@
 namespace ricochet {
 namespace {
 
-const MovingColliders& bodies_of(const ParticleStep& step) { return *step.rules().bodies; }
+const MovingColliders& bodies_of(const ParticleStep& step) { return step.rules().bodies; }
 double radius_of(const ParticleStep& step) { return step.state().radius; }
 const StoredPosition& stored_of(const ParticleStep& step) { return step.chain().stored(); }
 
-/// Returns a position in the world at a time, in a body's frame.
-Vec3 position_in(const MovingColliders& bodies, BodyId body, const StoredPosition& at) {
-    return body == kWorldBody ? at.position : bodies.pose(body, at.time).local_position(at.position);
-}
-
-/// Tests a segment in the frames of rigid colliders, moving and at rest.
-bool is_segment_free_of_rigid(const ParticleStep& step, const StoredPosition& from, const StoredPosition& to) {
-    const MovingColliders& bodies = bodies_of(step);
-    const auto is_free_in = [&](BodyId body) {
-        const CollisionWorld& world = bodies.world(body);
-        if (world.empty()) return true;
-        return !Obstacles(world, position_in(bodies, body, from), radius_of(step)).block(position_in(bodies, body, to));
-    };
-    for (BodyId body = 0; body < bodies.size(); ++body) {
-        if (!is_free_in(body)) return false;
-    }
-    return is_free_in(kWorldBody);
+/// Returns the stored position in a body's frame.
+Vec3 stored_position_in(const ParticleStep& step, BodyId body) {
+    return bodies_of(step).local_position(body, stored_of(step).position, stored_of(step).time);
 }
 
 /// Moves the stored position along a segment, if that is free.
 bool take_segment(ParticleStep& step, const StoredPosition& next) {
-    if (!is_segment_free(step, stored_of(step), next)) return false;
+    if (!is_segment_free(bodies_of(step), stored_of(step), next, radius_of(step))) return false;
     step.chain().add(next, stored_of(step).time, step.scratch());
     return true;
 }
@@ -62,11 +48,10 @@ bool carry_until(ParticleStep& step, const CarriedPosition& carried_position, do
 
 /// Carries the particle with a body, or lets it stay in the world.
 bool carry_with_body(ParticleStep& step, BodyId body, double until) {
-    const MovingColliders& bodies = bodies_of(step);
-    const Vec3 local_position = position_in(bodies, body, stored_of(step));
+    const Vec3 local_position = stored_position_in(step, body);
     const auto carried_position = [&](double time) {
         if (body == kWorldBody) return stored_of(step).position;
-        return flush_tiny(bodies.pose(body, time).point(local_position));
+        return flush_tiny(bodies_of(step).pose(body, time).point(local_position));
     };
     return carry_until(step, carried_position, until, kCarryDepth);
 }
@@ -74,18 +59,15 @@ bool carry_with_body(ParticleStep& step, BodyId body, double until) {
 /// Returns the position at a time of a particle that moves with the nearest point of a deforming triangle and keeps its
 /// distance. A sphere that overlaps the triangle by rounding is moved off it.
 Vec3 carried_by_triangle(const ParticleStep& step, SurfaceId surface, double until) {
-    const DeformingColliders& deforming = bodies_of(step).deforming();
     const Vec3& from = stored_of(step).position;
-    const auto [a, b, c] = deforming.corners_at(surface, stored_of(step).time);
-    const ClosestPointOnTriangle closest = closest_point_on_triangle(from, a, b, c);
-    const Vec3 weights = barycentric_coordinates(closest, a, b, c);
-    const std::array<Vec3, 3> later = deforming.corners_at(surface, until);
-    const Vec3 displacement = weights.x * (later[0] - a) + weights.y * (later[1] - b) + weights.z * (later[2] - c);
-    const Vec3 moved = from + displacement;
+    const DeformedTriangle now = bodies_of(step).deforming().triangle_at(surface, stored_of(step).time);
+    const DeformedTriangle later = bodies_of(step).deforming().triangle_at(surface, until);
+    const ClosestPointOnTriangle closest = closest_point_on_triangle(from, now.a, now.b, now.c);
+    const Vec3 moved = from + now.displacement_of(from, later);
     const double radius = radius_of(step);
     double distance = std::sqrt(closest.distance_squared);
     if (distance >= radius - sphere_tolerance(radius, max_abs(moved))) distance = std::max(distance, radius);
-    const CollisionWorld::Nearest nearest = deforming.nearest(surface, moved, until);
+    const CollisionWorld::Nearest nearest = later.nearest(moved);
     const Vec3 normal = dot(nearest.normal, closest.offset) < 0.0 ? -nearest.normal : nearest.normal;
     return flush_tiny(moved + (distance - nearest.distance) * normal);
 }
@@ -97,13 +79,13 @@ void carry_with_meshes(ParticleStep& step, double until) {
     const Vec3& position = stored_of(step).position;
     const double beside =
         2.0 * kEdgeOffsets * contact_offset(position) + 2.0 * sphere_tolerance(radius, max_abs(position));
-    const Vec3 reach{radius + beside, radius + beside, radius + beside};
     std::vector<SurfaceId> near;
-    deforming.near({position - reach, position + reach}, near);
+    deforming.near(ball_box(position, radius + beside), near);
     for (const SurfaceId surface : near) {
         if (stored_of(step).time >= until) break;
-        const double distance = deforming.nearest(surface, stored_of(step).position, stored_of(step).time).distance;
-        if (distance > radius + std::max(beside, kEdgeOffsets * deforming.offset_of(surface))) continue;
+        const DeformedTriangle now = deforming.triangle_at(surface, stored_of(step).time);
+        const double offset = kEdgeOffsets * deforming.mesh_with(surface).offset();
+        if (now.nearest(stored_of(step).position).distance > radius + std::max(beside, offset)) continue;
         const auto carried_position = [&](double time) { return carried_by_triangle(step, surface, time); };
         static_cast<void>(carry_until(step, carried_position, until, kCarryDepth));
     }
@@ -127,13 +109,12 @@ void carry_by_turns(ParticleStep& step, double until) {
 
 /// Bounds the rounding, in m, of stored positions in a frame until a time.
 double rounding_in(const ParticleStep& step, BodyId body, double until) {
-    const MovingColliders& bodies = bodies_of(step);
     double rounding = ulp(max_abs(stored_of(step).position));
     if (body == kWorldBody) return rounding;
-    const Vec3 local_position = position_in(bodies, body, stored_of(step));
+    const Vec3 local_position = stored_position_in(step, body);
     rounding = std::max(rounding, ulp(max_abs(local_position)));
     for (const double time : {stored_of(step).time, until}) {
-        const MovingPose pose = bodies.pose(body, time);
+        const MovingPose pose = bodies_of(step).pose(body, time);
         const Vec3 world = pose.point(local_position);
         const double largest = std::max(max_abs(world), max_abs(pose.world_from_frame.translation));
         rounding = std::max({rounding, ulp(largest), max_abs(pose.local_position(world) - local_position)});
@@ -145,12 +126,12 @@ double rounding_in(const ParticleStep& step, BodyId body, double until) {
 bool step_aside(ParticleStep& step, BodyId body, double clearance) {
     const MovingColliders& bodies = bodies_of(step);
     const StoredPosition& stored = stored_of(step);
-    const MovingPose pose = bodies.pose(body, stored.time);
-    const Vec3 local_position = body == kWorldBody ? stored.position : pose.local_position(stored.position);
+    const Vec3 local_position = stored_position_in(step, body);
     const auto displacement = displacement_to_clear(bodies.world(body), local_position, radius_of(step), clearance);
     if (!displacement) return false;
     const Vec3 aside = local_position + *displacement;
-    if (!take_segment(step, {flush_tiny(body == kWorldBody ? aside : pose.point(aside)), stored.time})) return false;
+    const Vec3 in_world = body == kWorldBody ? aside : bodies.pose(body, stored.time).point(aside);
+    if (!take_segment(step, {flush_tiny(in_world), stored.time})) return false;
     step.particle().attachment.reset();  // it has left its place of rest
     return true;
 }
@@ -177,16 +158,14 @@ bool wait_until(ParticleStep& step, double until) {
     step.scratch().driven = true;
     carry_by_turns(step, until);
     if (stored_of(step).time < until) carry_with_clearance(step, until);
-    step.state().position = position_in(bodies_of(step), step.reference().body(), stored_of(step));
+    step.state().position = stored_position_in(step, step.reference().body());
     return stored_of(step).time >= until;
 }
 
 /// Moves a stalled particle to a position at the current time, if the segment to it is free.
 bool take_late_segment(ParticleStep& step, const Vec3& position) {
     const StoredPosition next{flush_tiny(position), step.state().time};
-    const bool is_free = is_segment_free_of_rigid(step, stored_of(step), next) &&
-                         bodies_of(step).deforming().is_late_segment_free(stored_of(step), next, radius_of(step));
-    if (!is_free) return false;
+    if (!is_late_segment_free(bodies_of(step), stored_of(step), next, radius_of(step))) return false;
     step.chain().add(next, stored_of(step).time, step.scratch());
     step.particle().attachment.reset();
     return true;
@@ -202,8 +181,7 @@ bool catch_up_directly(ParticleStep& step) {
     const double now = step.state().time;
     if (take_late_segment(step, stored_of(step).position)) return true;
     for (BodyId body = 0; body < bodies.size(); ++body) {
-        const Vec3 local_position = position_in(bodies, body, stored_of(step));
-        if (take_late_segment(step, bodies.pose(body, now).point(local_position))) return true;
+        if (take_late_segment(step, bodies.pose(body, now).point(stored_position_in(step, body)))) return true;
     }
     std::vector<SurfaceId> nearest;
     bodies.deforming().nearest_to(stored_of(step).position, stored_of(step).time, kMostTriangles, nearest);
@@ -214,28 +192,18 @@ bool catch_up_directly(ParticleStep& step) {
 
 }  // namespace
 
-bool is_segment_free(const ParticleStep& step, const StoredPosition& from, const StoredPosition& to) {
-    return is_segment_free_of_rigid(step, from, to) &&
-           bodies_of(step).deforming().is_segment_free(from, to, radius_of(step));
-}
-
-bool is_segment_free(const ParticleStep& step, const SurfacesInOtherFrames& others, const PathPoint& from,
-                     const PathPoint& to) {
-    const PathClock& clock = others.view().clock();
-    return is_segment_free(step, {from.world, clock.at(from.time)}, {to.world, clock.at(to.time)});
-}
-
 void shift_to(ParticleStep& step, const Vec3& position) {
     if (take_segment(step, {position, stored_of(step).time})) step.state().position = position;
 }
 
 void keep_stored_position(ParticleStep& step) {
+    if (!step.chain().is_timed()) return;
     step.state().position = stored_of(step).position;
     step.particle().stored_time = stored_of(step).time;
 }
 
 void stay_until(ParticleStep& step, double until) {
-    if (step.rules().bodies == nullptr) return;
+    if (!step.chain().is_timed()) return;
     step.chain().add({stored_of(step).position, until}, stored_of(step).time, step.scratch());
 }
 
@@ -252,7 +220,7 @@ void give_up(ParticleStep& step) {
 
 bool catch_up(ParticleStep& step) {
     const double now = step.state().time;
-    if (!(stored_of(step).time < now)) return true;
+    if (!step.chain().is_timed() || !(stored_of(step).time < now)) return true;
     if (wait_until(step, now)) return true;
     if (catch_up_directly(step)) {
         step.state().position = stored_of(step).position;

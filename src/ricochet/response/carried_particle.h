@@ -3,24 +3,17 @@
 /// along by a collider, in segments that are free of all colliders.
 #pragma once
 
-#include "ricochet/collision/surfaces_in_other_frames.h"
 #include "ricochet/response/particle_step.h"
 
 namespace ricochet {
 
-/// Returns true if a segment is free in the frames of all colliders. Exact. Only for scenes with moving colliders.
-[[nodiscard]] bool is_segment_free(const ParticleStep& step, const StoredPosition& from, const StoredPosition& to);
-/// As above, for a segment between two points of a path. others: surfaces of other frames near the path.
-[[nodiscard]] bool is_segment_free(const ParticleStep& step, const SurfacesInOtherFrames& others, const PathPoint& from,
-                                   const PathPoint& to);
-
 /// Moves the particle to a position in the world in no time, if a free segment leads there. Else it stays.
 void shift_to(ParticleStep& step, const Vec3& position);
 
-/// Makes the stored position the particle's, at the end of a move among moving colliders.
+/// Makes the stored position the particle's at the end of a move, if colliders move.
 void keep_stored_position(ParticleStep& step);
 
-/// Keeps the stored position until a time, in s. No moving collider may come near it.
+/// Keeps the stored position until a time, in s, if colliders move. None may come near it.
 void stay_until(ParticleStep& step, double until);
 
 /// Gives up the time that is left of the step: it counts as unsimulated. The particle waits.

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/collision/obstacles.h"
 #include "ricochet/collision/safe_position.h"
 #include "ricochet/collision/surfaces_in_other_frames.h"
 #include "ricochet/response/carried_particle.h"
@@ -24,8 +25,8 @@ bool step_off_in_frame(ParticleStep& step, const NearSurfaces& near) {
 }
 
 void leave_surface(ParticleStep& step, const NearSurfaces& near) {
-    const bool is_off = step.rules().bodies == nullptr ? step_off_surface(near, step.state(), step.scratch())
-                                                       : step_off_in_frame(step, near);
+    const bool is_off =
+        step.chain().is_timed() ? step_off_in_frame(step, near) : step_off_surface(near, step.state(), step.scratch());
     is_off ? step.chain().begin(step.state().position, step.scratch()) : give_up(step);
 }
 
@@ -56,8 +57,10 @@ bool is_polygon_free(const ParticleStep& step, const NearSurfaces& near, const C
         const PathPoint next = near.point_at(outside.point[k], time);
         if (!near.is_free(chain.back().position, next.position)) return false;
         // In other frames the polygon does not enclose the path, and only surfaces near the path are known.
-        if (near.other_frames() != nullptr && !is_segment_free(step, *near.other_frames(), chain.back(), next)) {
-            return false;
+        if (const SurfacesInOtherFrames* const others = near.other_frames()) {
+            const SurfacesInTime& surfaces = others->surfaces();
+            const StoredPosition from = surfaces.stored_position(chain.back());
+            if (!is_segment_free(surfaces.bodies(), from, surfaces.stored_position(next), query.radius)) return false;
         }
         chain.push_back(next);
     }
@@ -80,7 +83,7 @@ CertifiedPath follow_to_end(const ParticleStep& step, const NearSurfaces& near, 
 void record_chain(ParticleStep& step, const PathClock& clock) {
     MoveScratch& scratch = step.scratch();
     const std::vector<PathPoint>& chain = scratch.contacts.chain;
-    const bool is_timed = step.rules().bodies != nullptr;
+    const bool is_timed = step.chain().is_timed();
     const auto time_of = [&](const PathPoint& p) { return is_timed ? clock.at(p.time) : 0.0; };
     if (is_timed) step.chain().store({chain.back().world, time_of(chain.back())});
     if (!scratch.record_segments) return;
@@ -93,8 +96,7 @@ void record_chain(ParticleStep& step, const PathClock& clock) {
 }  // namespace
 
 double move_certified(ParticleStep& step, const ContactQuery& query, ContactQueryResult& found) {
-    const PathClock clock = step.rules().bodies == nullptr ? PathClock{} : step.clock_of(query.path);
-    const double elapsed = move_certified_within(step, query, found, clock);
+    const double elapsed = move_certified_within(step, query, found, step.clock_of(query.path));
     step.pass(elapsed);
     return elapsed;
 }

@@ -132,7 +132,7 @@ ContactInterval ContactFollower::plan(const Pull& pull, double duration) {
 /// forces are constant. Returns std::nullopt if another plan describes the interval better.
 std::optional<FlatInterval> ContactFollower::plan_turning_slip(const Pull& pull, double duration) {
     const bool has_constant_forces = !pull.acts || rules().forces.is_uniform_for(state());
-    if (manifold_.size() != 1 || rules().frame != nullptr || !has_constant_forces) return std::nullopt;
+    if (manifold_.size() != 1 || step_.reference().is_moving() || !has_constant_forces) return std::nullopt;
     const SupportSurface surface = manifold_.supports(surfaces()).surfaces[0];
     const double radius = state().radius;
     if (radius > 0.0 && (surface.rolling_friction > 0.0 || surface.spinning_friction > 0.0)) return std::nullopt;
@@ -345,7 +345,7 @@ std::optional<Contact> ContactFollower::move_along(CurvedPath& trajectory, const
 
 /// Returns true if forces vary within a step, and the integrator is of second order or higher.
 bool ContactFollower::forces_vary() const {
-    if (rules().frame != nullptr) return true;
+    if (step_.reference().is_moving()) return true;
     const bool is_coupled = state().coupling != nullptr && state().coupling->varies();  // `ballistic` follows that, too
     const bool follows = follows_varying_forces(rules().settings.integrator.kind) || is_coupled;
     return follows && !rules().forces.is_uniform_for(state());
@@ -354,7 +354,7 @@ bool ContactFollower::forces_vary() const {
 /// Returns true if varying forces require an integrated arc, for its energy or its tolerance. A moving frame requires
 /// it for its effect on spins.
 bool ContactFollower::needs_arc() const {
-    return rules().frame != nullptr || tolerance() || rules().forces.is_conservative_for(state());
+    return step_.reference().is_moving() || tolerance() || rules().forces.is_conservative_for(state());
 }
 
 /// Returns the error tolerance of an arc, if the integrator chooses its own steps.

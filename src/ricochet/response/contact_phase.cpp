@@ -50,7 +50,7 @@ std::optional<Contact> ContactPhase::resume(double rounding) {
     const Vec3 forces = rules().forces.acceleration(state());
     const auto support = support_.hardest_pressed(forces);
     if (!support || lands()) return std::nullopt;
-    if (kicks_first(rules().settings.integrator.kind) && rules().frame == nullptr) {
+    if (kicks_first(rules().settings.integrator.kind) && !step_.reference().is_moving()) {
         // Every other contact is ended by a kick: it is part of the step, and the next landing resolves it.
         if (!began_still_ || !is_finite(forces)) return std::nullopt;
         const ContactInterval interval = follower_.plan({forces}, step_.remaining());
@@ -131,8 +131,7 @@ std::optional<Contact> ContactPhase::impact_beside(const ContactSurface& support
     const double slow = std::max(step_.resting_speed(), rounding);
     // Impacts on the surfaces of a dynamic body are resolved one after another, which does not end in a narrow wedge.
     // There, contact removes the approach.
-    const MovingColliders* const bodies = rules().bodies;
-    if (bodies != nullptr && bodies->is_dynamic(bodies->body_of(manifold_[0].surface))) return std::nullopt;
+    if (surfaces().is_dynamic(manifold_[0].surface)) return std::nullopt;
     std::array<double, kMostSupports> departures{};
     const auto is_hit_at = [&](const Vec3& velocity) {
         for (std::size_t k = 0; k < manifold_.size(); ++k) departures[k] = dot(velocity, manifold_.normals()[k]);
@@ -257,7 +256,7 @@ std::optional<Contact> ContactPhase::follow_surface(bool kicked) {
             continue;
         }
         if (stop.rests) {
-            const double until = rules().frame == nullptr ? step_.remaining() : time_at_rest();
+            const double until = !step_.reference().is_moving() ? step_.remaining() : time_at_rest();
             if (until >= step_.remaining()) return rest(forces, !kicked);
             if (auto contact = wait(until, forces)) return contact;
         }
@@ -366,7 +365,7 @@ std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
     if (contact) follower_.join_impact(*contact);
     const double elapsed = left - step_.remaining();
     Vec3 mean = forces;
-    if (rules().frame != nullptr) {
+    if (step_.reference().is_moving()) {
         ForceInput middle = state();
         middle.time -= 0.5 * elapsed;
         mean = rules().forces.acceleration(middle);

@@ -3,24 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ricochet/collision/surfaces_in_time.h"
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {
 namespace {
 
 /// Returns the normal, in the world, of a body's surface that the particle touches.
-Vec3 normal_in_world(const ResponseRules& rules, const MovingParticle& particle, BodyId body, SurfaceId surface) {
-    const MovingPose pose = rules.bodies->pose(body, particle.state.time);
-    const Vec3 seen = pose.local_position(particle.state.position);
-    const Vec3 along = rules.bodies->world(body).nearest(surface, seen).normal;
-    return pose.world_from_frame.direction(along);
+Vec3 normal_in_world(const ResponseRules& rules, const MovingParticle& particle, SurfaceId surface) {
+    const SurfacesInTime now(rules.bodies, kWorldBody, particle.state.time);
+    return now.nearest(surface, now.stored(particle.state.position)).normal;
 }
 
 /// A particle in a body's frame, and the forces on it there over its mass, in m/s^2.
 struct SeenFromBody {
     SeenFromBody(const ResponseRules& rules, const FrameRules& frame_rules, const MovingParticle& particle, BodyId body)
-        : frame(rules.bodies), state(particle.state) {
-        frame.set(body);
+        : frame(rules.bodies, body), state(particle.state) {
         const RecordedMotion motion =
             frame.in_frame({state.position, state.velocity, particle.spin}, particle.state.time);
         state.position = motion.position;
@@ -37,7 +35,7 @@ struct SeenFromBody {
 double slowest_rebound_from(const ResponseRules& rules, const FrameRules& frame_rules, const MovingParticle& particle,
                             BodyId body, const Vec3& normal) {
     const double slow = rules.settings.resting_speed;
-    if (!rules.bodies->is_dynamic(body)) return slow;
+    if (!rules.bodies.is_dynamic(body)) return slow;
     const SeenFromBody seen(rules, frame_rules, particle, body);
     const double pressing = std::fabs(dot(seen.pull, seen.direction(normal)));
     return std::max(slow, 0.5 * kShortestPart * rules.settings.time_step * pressing);
@@ -47,12 +45,11 @@ double slowest_rebound_from(const ResponseRules& rules, const FrameRules& frame_
 
 bool releases(const ResponseRules& rules, const FrameRules& frame_rules, const MovingParticle& particle, BodyId body) {
     const RecordedMotion motion{particle.state.position, particle.state.velocity, particle.spin};
-    ReferenceFrame frame(rules.bodies);
-    frame.set(body);
+    const ReferenceFrame frame(rules.bodies, body);
     const double jump = length(frame.in_frame(motion, particle.state.time).velocity);
-    if (!rules.bodies->is_dynamic(body)) return jump > rules.settings.resting_speed;
-    const Mobility mobility = rules.bodies->mobility(body, particle.state.time);
-    const Vec3 push = normal_in_world(rules, particle, body, particle.contact.surfaces[0]);
+    if (!rules.bodies.is_dynamic(body)) return jump > rules.settings.resting_speed;
+    const Mobility mobility = rules.bodies.mobility(body, particle.state.time);
+    const Vec3 push = normal_in_world(rules, particle, particle.contact.surfaces[0]);
     const double weight = particle.state.mass * dot(mobility.change_at(particle.state.position, push), push);
     return jump * std::max(1.0, weight) > slowest_rebound_from(rules, frame_rules, particle, body, push);
 }
@@ -61,7 +58,7 @@ double slowest_rebound(const ResponseRules& rules, const FrameRules& frame_rules
                        const Contact& contact) {
     double slow = rules.settings.resting_speed;
     for (const ContactSurface& surface : contact.all()) {
-        const BodyId body = rules.bodies->body_of(surface.surface);
+        const BodyId body = rules.bodies.body_of(surface.surface);
         slow = std::max(slow, slowest_rebound_from(rules, frame_rules, particle, body, surface.normal));
     }
     return slow;
@@ -69,10 +66,10 @@ double slowest_rebound(const ResponseRules& rules, const FrameRules& frame_rules
 
 std::optional<double> speed_let_go(const ResponseRules& rules, const FrameRules& frame_rules,
                                    const MovingParticle& particle, SurfaceId surface) {
-    const BodyId body = rules.bodies->body_of(surface);
-    if (!rules.bodies->is_dynamic(body)) return std::nullopt;
+    const BodyId body = rules.bodies.body_of(surface);
+    if (!rules.bodies.is_dynamic(body)) return std::nullopt;
     const SeenFromBody seen(rules, frame_rules, particle, body);
-    const Vec3 normal = seen.direction(normal_in_world(rules, particle, body, surface));
+    const Vec3 normal = seen.direction(normal_in_world(rules, particle, surface));
     const double speed = std::fabs(dot(seen.state.velocity, normal));
     const double of_step =
         rules.settings.time_step * (length(seen.pull) + length(rules.forces.acceleration(particle.state)));

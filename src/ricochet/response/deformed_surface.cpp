@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "ricochet/core/bisection.h"
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/sweep/closest_point.h"
 
@@ -25,47 +26,44 @@ struct Candidate {
 
 /// Returns the distance, in m, by which the foot of a position lies beside a triangle. It is measured along the
 /// triangle's plane: the difference of the distances to the rim and to the plane would be rounding of a few offsets.
-double beyond_rim(const DeformingColliders& deforming, SurfaceId surface, const Vec3& p, double time) {
-    if (!deforming.nearest(surface, p, time).rim) return 0.0;
-    const auto [a, b, c] = deforming.corners_at(surface, time);
-    const Vec3 offset = closest_point_on_triangle(p, a, b, c).offset;
-    const Vec3 normal = deforming.unit_normal_of(surface, time);
+double beyond_rim(const DeformedTriangle& triangle, const Vec3& p) {
+    if (!triangle.nearest(p).rim) return 0.0;
+    const Vec3 offset = closest_point_on_triangle(p, triangle.a, triangle.b, triangle.c).offset;
+    const Vec3 normal = triangle.unit_normal();
     return length(offset - dot(offset, normal) * normal);
 }
 
 /// Returns true if a point touches a triangle from above, or stands on its rim and moves no further beyond it. A point
 /// above a convex edge is over neither face, because of its height.
-bool is_point_over(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface,
-                   const Vec3& velocity, const Vec3& normal, double separation_speed) {
-    const double offset = deforming.offset_of(surface);
-    const Vec3& p = particle.position;
-    const double beyond = beyond_rim(deforming, surface, p, particle.time);
+bool is_point_over(const DeformedTriangle& triangle, double offset, const Vec3& p, const Vec3& velocity,
+                   const Vec3& normal, double separation_speed) {
+    const double beyond = beyond_rim(triangle, p);
     if (beyond == 0.0) return true;
     const Vec3 slip = velocity - dot(velocity, normal) * normal;
     const double speed = length(slip);
     if (speed <= kStandingSlip * separation_speed) return true;
     const Vec3 next = p + (kRimLookOffsets * offset / speed) * slip;
-    return beyond_rim(deforming, surface, next, particle.time) <= beyond + kOverRim * offset;
+    return beyond_rim(triangle, next) <= beyond + kOverRim * offset;
 }
 
 /// Returns the contact of the particle with a surface at its present time, if there is one.
 std::optional<Candidate> touched(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface,
                                  double separation_speed) {
-    const double reach = kTouchingOffsets * deforming.offset_of(surface);
+    const DeformingMesh& mesh = deforming.mesh_with(surface);
+    const DeformedTriangle triangle = mesh.triangle_at(surface, particle.time);
     const Vec3& p = particle.position;
-    const CollisionWorld::Nearest nearest = deforming.nearest(surface, p, particle.time);
-    if (std::fabs(nearest.distance - particle.radius) > reach) return std::nullopt;
+    const CollisionWorld::Nearest nearest = triangle.nearest(p);
+    if (std::fabs(nearest.distance - particle.radius) > kTouchingOffsets * mesh.offset()) return std::nullopt;
     Candidate found{{{surface, nearest.normal, nearest.flat}, {surface}}};
-    const Vec3 velocity = particle.velocity - deforming.motion_at(surface, p, particle.time).velocity;
+    const Vec3 velocity = particle.velocity - mesh.motion_at(surface, p, particle.time).velocity;
     if (particle.radius == 0.0) {
         if (nearest.rim) {
             // The direction from the rim is mere rounding, so the plane's normal is used.
-            const double height = deforming.signed_distance_from(surface, p, particle.time);
-            const Vec3 normal = deforming.unit_normal_of(surface, particle.time);
-            found.contact.surface = {surface, height < 0.0 ? -normal : normal, true};
+            const Vec3 normal = triangle.unit_normal();
+            found.contact.surface = {surface, triangle.signed_distance_from(p) < 0.0 ? -normal : normal, true};
         }
         found.is_over =
-            is_point_over(deforming, particle, surface, velocity, found.contact.surface.normal, separation_speed);
+            is_point_over(triangle, mesh.offset(), p, velocity, found.contact.surface.normal, separation_speed);
     }
     found.is_left = dot(velocity, found.contact.surface.normal) > separation_speed;
     return found;
@@ -73,15 +71,13 @@ std::optional<Candidate> touched(const DeformingColliders& deforming, const Forc
 
 /// Returns true if a triangle lies behind the plane of another triangle below the particle. The particle would meet
 /// that one first.
-bool is_behind(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface,
-               const ContactSurface& over) {
-    const std::array<Vec3, 3> corners = deforming.corners_at(surface, particle.time);
-    const double tolerance = 2.0 * deforming.offset_of(surface);
-    const Vec3 normal = deforming.unit_normal_of(over.surface, particle.time);
-    const double side = dot(normal, over.normal) < 0.0 ? -1.0 : 1.0;
-    return std::all_of(corners.begin(), corners.end(), [&](const Vec3& corner) {
-        return side * deforming.signed_distance_from(over.surface, corner, particle.time) <= tolerance;
-    });
+bool is_behind(const DeformingColliders& deforming, double time, SurfaceId surface, const ContactSurface& over) {
+    const auto [a, b, c] = deforming.triangle_at(surface, time);
+    const double tolerance = 2.0 * deforming.mesh_with(surface).offset();
+    const DeformedTriangle below = deforming.triangle_at(over.surface, time);
+    const double side = dot(below.unit_normal(), over.normal) < 0.0 ? -1.0 : 1.0;
+    const auto is_low = [&](const Vec3& corner) { return side * below.signed_distance_from(corner) <= tolerance; };
+    return is_low(a) && is_low(b) && is_low(c);
 }
 
 /// Returns true if two triangles lie in one plane. Their common edge is not felt.
@@ -94,20 +90,20 @@ bool are_coplanar(const Candidate& one, const Candidate& other) {
 /// with them: rounding decides on which side of their edge the point is.
 void drop_beyond_convex_edges(const DeformingColliders& deforming, const ForceInput& particle,
                               std::vector<Candidate>& found) {
-    std::stable_partition(found.begin(), found.end(), [&](const Candidate& one) {
-        return beyond_rim(deforming, one.contact.surface.surface, particle.position, particle.time) == 0.0;
-    });
+    const auto is_inside = [&](const Candidate& one) {
+        const DeformedTriangle triangle = deforming.triangle_at(one.contact.surface.surface, particle.time);
+        return beyond_rim(triangle, particle.position) == 0.0;
+    };
+    std::stable_partition(found.begin(), found.end(), is_inside);
     std::stable_partition(found.begin(), found.end(), [](const Candidate& one) { return one.is_over; });
     std::vector<Candidate> kept;
     for (Candidate& one : found) {
-        const SurfaceId surface = one.contact.surface.surface;
-        const bool is_inside = beyond_rim(deforming, surface, particle.position, particle.time) == 0.0;
         const auto hides = [&](const Candidate& over) {
             return over.is_over && !are_coplanar(over, one) &&
-                   is_behind(deforming, particle, surface, over.contact.surface);
+                   is_behind(deforming, particle.time, one.contact.surface.surface, over.contact.surface);
         };
-        const bool is_seen = is_inside || std::none_of(kept.begin(), kept.end(), hides);
-        if (is_inside || (is_seen && (one.is_over || !kept.empty()))) kept.push_back(std::move(one));
+        const bool is_seen = (one.is_over || !kept.empty()) && std::none_of(kept.begin(), kept.end(), hides);
+        if (is_inside(one) || is_seen) kept.push_back(std::move(one));
     }
     found = std::move(kept);
 }
@@ -116,27 +112,25 @@ void drop_beyond_convex_edges(const DeformingColliders& deforming, const ForceIn
 /// touches at once.
 double seam_turn(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface) {
     if (particle.radius == 0.0) return kSameNormal;
-    return kSeamTurn + 2.0 * kTouchingOffsets * deforming.offset_of(surface) / particle.radius;
-}
-
-/// Returns the rate of a triangle's normal times the radius, in m/s.
-Vec3 turning_of_normal(const DeformingColliders::Motion& motion, const Vec3& normal, double radius) {
-    return radius * cross(motion.turning, normal);
+    return kSeamTurn + 2.0 * kTouchingOffsets * deforming.mesh_with(surface).offset() / particle.radius;
 }
 
 /// Returns true if a triangle beside a sphere lies in the plane of a face that holds the sphere, until the next key.
 bool goes_on_as_one_plane(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface,
                           const ContactSurface& face) {
     const Vec3& p = particle.position;
-    const Vec3 own = deforming.unit_normal_of(surface, particle.time);
+    const DeformingMesh& mesh = deforming.mesh_with(surface);
+    const DeformedTriangle triangle = mesh.triangle_at(surface, particle.time);
+    const Vec3 own = triangle.unit_normal();
     const Vec3 normal = dot(own, face.normal) < 0.0 ? -own : own;
     if (1.0 - dot(normal, face.normal) > kSameNormal) return false;
-    const double height = std::fabs(deforming.signed_distance_from(surface, p, particle.time));
-    if (std::fabs(height - particle.radius) > kTouchingOffsets * deforming.offset_of(surface)) return false;
-    const DeformingColliders::Motion here = deforming.motion_at(face.surface, p, particle.time);
-    const DeformingColliders::Motion there = deforming.motion_at(surface, p, particle.time);
-    const Vec3 turn_here = turning_of_normal(here, normal, particle.radius);
-    const Vec3 turn_there = turning_of_normal(there, normal, particle.radius);
+    const double height = std::fabs(triangle.signed_distance_from(p));
+    if (std::fabs(height - particle.radius) > kTouchingOffsets * mesh.offset()) return false;
+    const DeformingMesh::Motion here = deforming.mesh_with(face.surface).motion_at(face.surface, p, particle.time);
+    const DeformingMesh::Motion there = mesh.motion_at(surface, p, particle.time);
+    // The rates of the normals times the radius, in m/s.
+    const Vec3 turn_here = particle.radius * cross(here.turning, normal);
+    const Vec3 turn_there = particle.radius * cross(there.turning, normal);
     const double scale = length(turn_here) + length(turn_there) + length(here.velocity) + length(there.velocity);
     return length(turn_there - turn_here) <= kSameVelocity * scale;
 }
@@ -161,13 +155,9 @@ std::vector<DeformedContact> touched_surfaces(const DeformingColliders& deformin
     std::vector<DeformedContact> all;
     if (deforming.empty()) return all;
     double margin = 0.0;
-    for (std::size_t mesh = 0; mesh < deforming.size(); ++mesh) {
-        margin = std::max(margin, kTouchingOffsets * deforming.offset_of_mesh(mesh));
-    }
-    margin = particle.radius + 2.0 * margin;
-    const Vec3 by{margin, margin, margin};
+    for (const DeformingMesh& mesh : deforming.all()) margin = std::max(margin, kTouchingOffsets * mesh.offset());
     std::vector<SurfaceId> near;
-    deforming.near({particle.position - by, particle.position + by}, near);
+    deforming.near(ball_box(particle.position, particle.radius + 2.0 * margin), near);
     std::vector<Candidate> found;
     for (const SurfaceId surface : near) {
         if (auto one = touched(deforming, particle, surface, separation_speed)) found.push_back(std::move(*one));
@@ -193,7 +183,8 @@ std::vector<DeformedContact> touched_surfaces(const DeformingColliders& deformin
 
 CurvatureTerms curvature_of(const DeformingColliders& deforming, const ForceInput& particle,
                             const ContactSurface& surface) {
-    const DeformingColliders::Motion motion = deforming.motion_at(surface.surface, particle.position, particle.time);
+    const DeformingMesh& mesh = deforming.mesh_with(surface.surface);
+    const DeformingMesh::Motion motion = mesh.motion_at(surface.surface, particle.position, particle.time);
     const Vec3& n = surface.normal;
     const Vec3 slip = particle.velocity - motion.velocity;
     if (surface.flat) {
@@ -202,7 +193,7 @@ CurvatureTerms curvature_of(const DeformingColliders& deforming, const ForceInpu
         return {2.0 * dot(turn, slip) - particle.radius * dot(turn, turn), dot(change, n) * n - change};
     }
     const Vec3 along = slip - dot(slip, n) * n;
-    const auto [a, b, c] = deforming.corners_at(surface.surface, particle.time);
+    const auto [a, b, c] = mesh.triangle_at(surface.surface, particle.time);
     const std::array<Vec3, 3> edges{b - a, c - b, a - c};
     const auto feature = static_cast<std::size_t>(closest_point_on_triangle(particle.position, a, b, c).feature);
     constexpr auto kFirstEdge = static_cast<std::size_t>(TriangleFeature::kEdgeAB);
@@ -210,7 +201,7 @@ CurvatureTerms curvature_of(const DeformingColliders& deforming, const ForceInpu
     double past = dot(along, along);
     if (feature >= kFirstEdge && feature < kFirstEdge + edges.size()) {
         const std::size_t k = feature - kFirstEdge;
-        const std::array<Vec3, 3> rates = deforming.corner_velocities(surface.surface, particle.time);
+        const std::array<Vec3, 3> rates = mesh.corner_velocities(surface.surface, particle.time);
         const double size = length(edges[k]);
         const double tilting = dot(rates[(k + 1) % 3] - rates[k], n) / size;
         const double passing = dot(along, edges[k]) / size + particle.radius * tilting;
@@ -219,35 +210,17 @@ CurvatureTerms curvature_of(const DeformingColliders& deforming, const ForceInpu
     return {past / particle.radius, {}};
 }
 
-SurfaceHeight height_above(const DeformingColliders& deforming, const DeformedContact& contact, const Vec3& position,
-                           double time) {
-    SurfaceId surface = contact.all.front();
-    CollisionWorld::Nearest nearest = deforming.nearest(surface, position, time);
-    for (const SurfaceId other : contact.all) {
-        const CollisionWorld::Nearest there = deforming.nearest(other, position, time);
-        if (!(there.distance < nearest.distance)) continue;
-        nearest = there;
-        surface = other;
-    }
-    SurfaceHeight height{nearest.normal, nearest.distance};
-    if (contact.surface.flat) {
-        height = {deforming.unit_normal_of(surface, time), deforming.signed_distance_from(surface, position, time)};
-    }
-    const double side = dot(height.normal, contact.surface.normal) < 0.0 ? -1.0 : 1.0;
-    return {side * height.normal, side * height.above};
-}
-
 double time_over(const DeformingColliders& deforming, const DeformedContact& contact,
                  const std::function<Vec3(double)>& position_at, double duration, double begin) {
     const auto beyond_all = [&](double at) {
         const Vec3 p = position_at(at);
         double least = std::numeric_limits<double>::infinity();
         for (const SurfaceId surface : contact.all) {
-            least = std::min(least, beyond_rim(deforming, surface, p, begin + at));
+            least = std::min(least, beyond_rim(deforming.triangle_at(surface, begin + at), p));
         }
         return least;
     };
-    const double most = beyond_all(0.0) + kOverRim * deforming.offset_of(contact.surface.surface);
+    const double most = beyond_all(0.0) + kOverRim * deforming.mesh_with(contact.surface.surface).offset();
     const auto is_over = [&](double at) { return beyond_all(at) <= most; };
     if (is_over(duration)) return duration;
     const double off = bisect(0.0, duration, kRimHalvings, is_over).high;

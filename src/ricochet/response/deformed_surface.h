@@ -40,15 +40,6 @@ struct CurvatureTerms {
 [[nodiscard]] CurvatureTerms curvature_of(const DeformingColliders& deforming, const ForceInput& particle,
                                           const ContactSurface& surface);
 
-/// Distance of a position from the nearest triangle of a contact at one time. Positive on the side of the contact's
-/// normal.
-struct SurfaceHeight {
-    Vec3 normal;         ///< unit
-    double above = 0.0;  ///< m
-};
-[[nodiscard]] SurfaceHeight height_above(const DeformingColliders& deforming, const DeformedContact& contact,
-                                         const Vec3& position, double time);
-
 /// Returns the time since the start of a trajectory, in s, until which it stays over a triangle of a contact with a
 /// face. At the most it may go as far beyond all their rims as it is at its start. Returns `duration` if it stays over
 /// them. The result is a little later than the time at which it leaves them. begin: time at the start, in s.

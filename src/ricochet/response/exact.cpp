@@ -2,19 +2,14 @@
 
 #include "ricochet/response/contact_phase.h"
 #include "ricochet/response/particle_mover.h"
-#include "ricochet/response/reference_frame.h"
 #include "ricochet/response/supported_acceleration.h"
 
 namespace ricochet {
 
-ExactResponse::ExactResponse(const ResponseRules& rules) : Response(rules) {
-    if (rules.bodies != nullptr) frame_rules_ = std::make_unique<FrameRules>(rules_);
-}
-
-ExactResponse::~ExactResponse() = default;
+ExactResponse::ExactResponse(const ResponseRules& rules) : Response(rules), frame_rules_(rules_) {}
 
 MoveOutcome ExactResponse::move(MovingParticle& particle, double duration, MoveScratch& scratch) const {
-    return ParticleMover(rules_, frame_rules_.get(), particle, duration, scratch).run();
+    return ParticleMover(rules_, frame_rules_, particle, duration, scratch).run();
 }
 
 SupportedAcceleration ExactResponse::supported_acceleration(const MovingParticle& particle, const Vec3& pull) const {

@@ -16,23 +16,17 @@
 /// second order or better (docs/responses.md).
 #pragma once
 
-#include <memory>
 #include <vector>
 
+#include "ricochet/response/reference_frame.h"
 #include "ricochet/response/response.h"
 
 namespace ricochet {
-
-class FrameRules;
 
 /// See the top of this file.
 class ExactResponse final : public Response {
 public:
     explicit ExactResponse(const ResponseRules& rules);
-    ExactResponse(const CollisionWorld& world, const ForceField& forces, std::span<const Material> materials,
-                  const ResponseSettings& settings)
-        : ExactResponse(ResponseRules{world, forces, materials, settings}) {}
-    ~ExactResponse() override;
 
     MoveOutcome move(MovingParticle& particle, double duration, MoveScratch& scratch) const override;
     void add_weight(const MovingParticle& particle, double duration, std::vector<SurfaceHit>& hits) const override;
@@ -40,7 +34,7 @@ public:
                                                                const Vec3& pull) const override;
 
 private:
-    std::unique_ptr<FrameRules> frame_rules_;  ///< null if no collider moves
+    FrameRules frame_rules_;
 };
 
 }  // namespace ricochet

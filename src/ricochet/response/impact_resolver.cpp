@@ -271,8 +271,8 @@ void ImpactResolver::apply_bounce(const ContactSurface& surface, Rebound rebound
 
 void ImpactResolver::bounce_off_body(const ContactSurface& surface, const Material& material, double restitution) {
     const ForceInput& state = particle_.state;
-    const BodyId body = rules_.bodies->body_of(surface.surface);
-    const Mobility mobility = rules_.bodies->mobility(body, state.time);
+    const BodyId body = rules_.bodies.body_of(surface.surface);
+    const Mobility mobility = rules_.bodies.mobility(body, state.time);
     const DynamicSurface dynamic{surface.normal, restitution, material.friction, surfaces_.velocity_of(surface),
                                  mobility};
     const Motion after = bounce_off_dynamic({state.velocity, particle_.spin}, state, dynamic);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ricochet/collision/surfaces_in_time.h"
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {
@@ -40,23 +41,19 @@ void ImpulseRecorder::close() {
     ColliderLoad& last = scratch_.loads.back();
     last.couple += couple;
     last.moment += couple;
-    const BodyId body = rules_.bodies == nullptr ? kWorldBody : rules_.bodies->body_of(last.surface);
+    const BodyId body = rules_.bodies.body_of(last.surface);
     const Vec3& turning = rules_.materials[rules_.world.material_of(last.surface)].motion.angular_velocity;
     if (body == kWorldBody) {
         last.work += dot(couple, turning);
         return;
     }
-    last.work += dot(couple, rules_.bodies->pose(body, last.time).world_from_frame.direction(turning));
-    const bool deforms = rules_.bodies->is_deforming(body);
-    const double time = time_of_push(body, last.time, last.impact);
-    last.work +=
-        dot(couple, deforms ? rules_.bodies->deforming().motion_at(last.surface, last.particle_center, time).turning
-                            : rules_.bodies->pose(body, time).angular_velocity);
+    last.work += dot(couple, rules_.bodies.pose(body, last.time).world_from_frame.direction(turning));
+    const SurfacesInTime then(rules_.bodies, kWorldBody, time_of_push(body, last.time, last.impact));
+    last.work += dot(couple, then.angular_velocity_of(last.surface, then.stored(last.particle_center)));
 }
 
 bool ImpulseRecorder::is_entered(SurfaceId surface) const {
-    if (rules_.bodies != nullptr && rules_.bodies->body_of(surface) != kWorldBody) return true;
-    return rules_.materials[rules_.world.material_of(surface)].drives();
+    return rules_.bodies.body_of(surface) != kWorldBody || rules_.materials[rules_.world.material_of(surface)].drives();
 }
 
 RecordedMotion ImpulseRecorder::motion_in_world() const {
@@ -83,37 +80,31 @@ Vec3 ImpulseRecorder::couple_of(const Vec3& spin_change) const {
 double ImpulseRecorder::work_on_material(const ColliderLoad& load, BodyId body, const Moment& at) const {
     const Material& material = rules_.materials[rules_.world.material_of(load.surface)];
     if (!material.drives()) return 0.0;
-    const MovingPose pose = rules_.bodies == nullptr ? MovingPose{} : rules_.bodies->pose(body, at.time);
-    const Vec3 seen = body == kWorldBody ? at.particle_center : pose.local_position(at.particle_center);
-    const Vec3 normal = normal_at(load.surface, body, seen, at.time);
+    const MovingPose pose = rules_.bodies.pose(body, at.time);
+    const SurfacesInTime then(rules_.bodies, body, at.time);
+    const PathPoint center = then.stored(at.particle_center);
+    const Vec3 normal = then.nearest(load.surface, center).normal;
     const double radius = particle_.state.radius;
-    const Vec3 along = material.motion.at(seen - radius * normal, normal);
+    const Vec3 along = material.motion.at(center.position - radius * normal, normal);
     const auto in_world = [&](const Vec3& v) { return pose.world_from_frame.direction(v); };
     const Vec3 resistance = load.couple + cross(radius * in_world(normal), load.impulse);
     return dot(load.impulse, in_world(along)) + dot(resistance, in_world(material.motion.angular_velocity));
 }
 
-/// Returns the surface's normal, in the body's frame, at a position in that frame.
-Vec3 ImpulseRecorder::normal_at(SurfaceId surface, BodyId body, const Vec3& seen, double time) const {
-    if (rules_.bodies == nullptr) return rules_.world.nearest(surface, seen).normal;
-    return rules_.bodies->is_deforming(body) ? rules_.bodies->deforming().nearest(surface, seen, time).normal
-                                             : rules_.bodies->world(body).nearest(surface, seen).normal;
-}
-
 /// Returns a time, in s, at which a body moves as it did while it pushed. Lasting contact is recorded at the end of its
 /// interval. That may be a key, after which the body moves differently.
 double ImpulseRecorder::time_of_push(BodyId body, double time, bool impact) const {
-    if (impact || body == kWorldBody || rules_.bodies->is_dynamic(body)) return time;
+    if (impact || body == kWorldBody || rules_.bodies.is_dynamic(body)) return time;
     const double rounding = kKeyUlps * ulp(time);
-    const double key = rules_.bodies->next_key(body, time - rounding);
+    const double key = rules_.bodies.next_key(body, time - rounding);
     if (!(key <= time + rounding)) return time;
-    return rules_.bodies->is_deforming(body) ? key - 2.0 * rounding : std::nextafter(key, key - 1.0);
+    return rules_.bodies.is_deforming(body) ? key - 2.0 * rounding : std::nextafter(key, key - 1.0);
 }
 
 void ImpulseRecorder::enter(const SurfaceHit& hit, const Vec3& couple) {
-    const BodyId body = rules_.bodies == nullptr ? kWorldBody : rules_.bodies->body_of(hit.surface);
+    const BodyId body = rules_.bodies.body_of(hit.surface);
     const double time = time_of_push(body, particle_.state.time, hit.impact);
-    const MovingPose pose = body == kWorldBody ? MovingPose{} : rules_.bodies->pose(body, time);
+    const MovingPose pose = rules_.bodies.pose(body, time);
     ColliderLoad load;
     load.particle = particle_.id;
     load.time = particle_.state.time;
@@ -126,13 +117,13 @@ void ImpulseRecorder::enter(const SurfaceHit& hit, const Vec3& couple) {
     load.work = dot(hit.impulse, pose.velocity) + dot(load.moment, pose.angular_velocity) +
                 work_on_material(load, body, {particle_.state.time, load.particle_center});
     load.approach = approach_;
-    if (rules_.bodies != nullptr && rules_.bodies->is_dynamic(body)) {
-        const Vec3 arm = load.particle_center - rules_.bodies->mobility(body, time).center;
-        load.work += dot(cross(arm, hit.impulse) + couple, rules_.bodies->turning_beside_path(body, time));
+    if (rules_.bodies.is_dynamic(body)) {
+        const Vec3 arm = load.particle_center - rules_.bodies.mobility(body, time).center;
+        load.work += dot(cross(arm, hit.impulse) + couple, rules_.bodies.turning_beside_path(body, time));
     }
-    if (rules_.bodies != nullptr && rules_.bodies->is_deforming(body)) {
-        const DeformingColliders::Motion motion =
-            rules_.bodies->deforming().motion_at(hit.surface, load.particle_center, time);
+    if (rules_.bodies.is_deforming(body)) {
+        const DeformingMesh::Motion motion =
+            rules_.bodies.deforming().mesh_with(hit.surface).motion_at(hit.surface, load.particle_center, time);
         load.work += dot(hit.impulse, motion.velocity) + dot(couple, motion.turning);
     }
     load.impact = hit.impact;
@@ -145,19 +136,19 @@ void ImpulseRecorder::enter(const SurfaceHit& hit, const Vec3& couple) {
 void ImpulseRecorder::enter_lasting(ColliderLoad& load, BodyId body) const {
     if (body == kWorldBody) {
         load.moment = cross(0.5 * (since_.particle_center + load.particle_center), load.impulse) + load.couple;
-    } else if (rules_.bodies->is_dynamic(body) || rules_.bodies->is_deforming(body)) {
+    } else if (rules_.bodies.is_dynamic(body) || rules_.bodies.is_deforming(body)) {
         return;  // its path is planned differently, and the position on the surface is not known
     }
     load.work = 0.5 * (load.work + work_at(load, body, since_));
     if (body == kWorldBody) return;
-    const auto origin = [&](double time) { return rules_.bodies->pose(body, time).world_from_frame.translation; };
+    const auto origin = [&](double time) { return rules_.bodies.pose(body, time).world_from_frame.translation; };
     load.moment += cross(0.5 * (origin(until_.time) - origin(since_.time)), load.impulse);
 }
 
 /// Returns the work, in J, of a load at the start of its interval. The moment is that of the interval's end: for moving
 /// surfaces, a couple is recorded for the difference to the angular momentum that the particle has lost.
 double ImpulseRecorder::work_at(const ColliderLoad& load, BodyId body, const Moment& at) const {
-    const MovingPose pose = body == kWorldBody ? MovingPose{} : rules_.bodies->pose(body, at.time);
+    const MovingPose pose = rules_.bodies.pose(body, at.time);
     const Vec3 moment = cross(load.particle_center - pose.world_from_frame.translation, load.impulse) + load.couple;
     return dot(load.impulse, pose.velocity) + dot(moment, pose.angular_velocity) + work_on_material(load, body, at);
 }

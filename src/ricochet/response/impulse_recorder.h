@@ -53,7 +53,6 @@ private:
     [[nodiscard]] Vec3 couple_of(const Vec3& spin_change) const;
     [[nodiscard]] double time_of_push(BodyId body, double time, bool impact) const;
     [[nodiscard]] double work_on_material(const ColliderLoad& load, BodyId body, const Moment& at) const;
-    [[nodiscard]] Vec3 normal_at(SurfaceId surface, BodyId body, const Vec3& seen, double time) const;
     void enter(const SurfaceHit& hit, const Vec3& couple);
 
     const ResponseRules& rules_;

@@ -87,9 +87,9 @@ const ContactSurface* first_dynamic(const MovingColliders& bodies, const Contact
 /// zero impulse, so it moves with the body until they are apart. contact: replaced by the next contact. Returns false
 /// if the contact is no such touch.
 bool ParticleMover::follows_receding_body(std::optional<Contact>& contact) {
-    if (frame_rules_ == nullptr || !step_.has_budget() || !(step_.remaining() > 0.0)) return false;
-    if (first_dynamic(*rules_.bodies, *contact) == nullptr) return false;
-    if (surfaces().approach(contact->all()) > slowest_rebound(rules_, *frame_rules_, particle_, *contact)) return false;
+    if (!step_.has_budget() || !(step_.remaining() > 0.0)) return false;
+    if (first_dynamic(rules_.bodies, *contact) == nullptr) return false;
+    if (surfaces().approach(contact->all()) > slowest_rebound(rules_, frame_rules_, particle_, *contact)) return false;
     const double before = step_.remaining();
     step_.begin_substep(particle_.state.time + 2.0 * kPinchedProgress * step_.duration());
     contact = follow_receding_body(Contact(*contact));
@@ -100,24 +100,22 @@ bool ParticleMover::follows_receding_body(std::optional<Contact>& contact) {
 /// small jump of the velocity.
 bool ParticleMover::is_released_by_jump() const {
     const std::span<const SurfaceId> supporting(particle_.contact.surfaces.data(), particle_.contact.count);
-    const auto has_jumped = [&](SurfaceId surface) {
-        return rules_.bodies->has_jumped(rules_.bodies->body_of(surface));
-    };
+    const auto has_jumped = [&](SurfaceId surface) { return rules_.bodies.has_jumped(rules_.bodies.body_of(surface)); };
     if (std::none_of(supporting.begin(), supporting.end(), has_jumped)) return false;
     if (!particle_.attachment) return true;
-    return releases(rules_, *frame_rules_, particle_, rules_.bodies->body_of(supporting[0]));
+    return releases(rules_, frame_rules_, particle_, rules_.bodies.body_of(supporting[0]));
 }
 
 /// Resumes contact, with the surfaces of one frame or of several, until it remains the same or ends.
 std::optional<Contact> ParticleMover::resume_among_bodies() {
     constexpr int kMostTurns = 4;
-    const MovingColliders& bodies = *rules_.bodies;
+    const MovingColliders& bodies = rules_.bodies;
     const ContactState& contact_state = particle_.contact;
     std::optional<Contact> next;
     for (int turn = 0; turn < kMostTurns && contact_state.count > 0 && !next && step_.remaining() > 0.0; ++turn) {
         const BodyId body = bodies.body_of(contact_state.surfaces[0]);
         if (is_released_by_jump()) {
-            release_speed_ = speed_let_go(rules_, *frame_rules_, particle_, contact_state.surfaces[0]);
+            release_speed_ = speed_let_go(rules_, frame_rules_, particle_, contact_state.surfaces[0]);
             particle_.contact = {};
             particle_.attachment.reset();
             break;
@@ -150,17 +148,17 @@ std::optional<Contact> ParticleMover::follow_in_frame(BodyId body, Contact* cont
 /// Like follow_in_frame(), but without the correction of recorded impulses.
 template <class Follow>
 std::optional<Contact> ParticleMover::follow_in_frame_unsettled(BodyId body, Contact* contact, const Follow& follow) {
-    step_.enter(body, frame_rules_->rules_of(body), contact);
+    step_.enter(body, frame_rules_.rules_of(body), contact);
     // A particle at rest on a body keeps its position in the body's frame to the last bit.
     if (const auto attachment = std::exchange(particle_.attachment, std::nullopt)) {
-        if (rules_.bodies->has_jumped(body)) {  // the body's jump has moved the particle
+        if (rules_.bodies.has_jumped(body)) {  // the body's jump has moved the particle
             ledger().record_impulse(particle_.contact.surfaces[0], -particle_.state.velocity, false);
         }
         particle_.state.position = attachment->position;
         particle_.state.velocity = {};
         particle_.spin = attachment->spin;
     }
-    const std::optional<double> jump = rules_.bodies->next_jump(body, particle_.state.time, particle_.step_end);
+    const std::optional<double> jump = rules_.bodies.next_jump(body, particle_.state.time, particle_.step_end);
     if (jump) step_.begin_substep(*jump);
     ContactPhase phase(step_);
     std::optional<Contact> next = follow(phase);
@@ -176,7 +174,7 @@ std::optional<Contact> ParticleMover::follow_in_frame_unsettled(BodyId body, Con
     }
     step_.leave(rules_, next ? &*next : nullptr);
     step_.end_substep();
-    if (is_released && was_supported) release_speed_ = speed_let_go(rules_, *frame_rules_, particle_, support);
+    if (is_released && was_supported) release_speed_ = speed_let_go(rules_, frame_rules_, particle_, support);
     leave_flight();
     return next;
 }
@@ -187,16 +185,16 @@ std::optional<Contact> ParticleMover::begin_contact(const Flight& flight, const 
     if (!meets_moving(contact)) return contact_phase_.begin(flight, contact, arriving);
     std::array<BodyId, Contact::kMostSurfaces> bodies{};
     std::size_t count = 0;
-    for (const ContactSurface& surface : contact.all()) bodies[count++] = rules_.bodies->body_of(surface.surface);
+    for (const ContactSurface& surface : contact.all()) bodies[count++] = rules_.bodies.body_of(surface.surface);
     std::sort(bodies.begin(), bodies.begin() + count);
-    const bool is_shared = bodies[0] != bodies[count - 1] || rules_.bodies->is_deforming(bodies[0]);
+    const bool is_shared = bodies[0] != bodies[count - 1] || rules_.bodies.is_deforming(bodies[0]);
     if (is_shared && step_.remaining() > 0.0 && SharedContact(step_).is_slow(contact, arriving)) {
         return begin_shared();
     }
     for (std::size_t k = count; k-- > 0;) {  // the world first
         if (k + 1 < count && bodies[k] == bodies[k + 1]) continue;
-        if (rules_.bodies->is_deforming(bodies[k])) continue;  // it has no frame
-        const Contact part = part_with(*rules_.bodies, bodies[k], contact);
+        if (rules_.bodies.is_deforming(bodies[k])) continue;  // it has no frame
+        const Contact part = part_with(rules_.bodies, bodies[k], contact);
         const double before = step_.remaining();
         const auto next = bodies[k] == kWorldBody ? contact_phase_.begin(flight, part, arriving)
                                                   : begin_in_frame(bodies[k], part, arriving);
@@ -228,8 +226,7 @@ std::optional<Contact> ParticleMover::begin_shared() {
 
 std::optional<Contact> ParticleMover::begin_in_frame(BodyId body, const Contact& contact, const Motion& arriving) {
     const double time = particle_.state.time;
-    ReferenceFrame frame(rules_.bodies);
-    frame.set(body);
+    const ReferenceFrame frame(rules_.bodies, body);
     const RecordedMotion seen = frame.in_frame({particle_.state.position, arriving.velocity, arriving.spin}, time);
     Contact own = contact;
     return follow_in_frame(body, &own, [&](ContactPhase& phase) {
@@ -245,17 +242,17 @@ bool ParticleMover::lands_again(const Contact& contact, double slow) const {
         return false;
     }
     return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
-        return rules_.bodies->is_dynamic(rules_.bodies->body_of(surface.surface));
+        return rules_.bodies.is_dynamic(rules_.bodies.body_of(surface.surface));
     });
 }
 
 /// Moves the particle with a dynamic body that it has hit. The body moves away only from the next move on.
 std::optional<Contact> ParticleMover::follow_receding_body(const Contact& contact) {
-    const SurfaceId surface = first_dynamic(*rules_.bodies, contact)->surface;
-    const BodyId body = rules_.bodies->body_of(surface);
+    const SurfaceId surface = first_dynamic(rules_.bodies, contact)->surface;
+    const BodyId body = rules_.bodies.body_of(surface);
     const Motion own{particle_.state.velocity, particle_.spin};
     const MomentumAccount account(step_);
-    Contact part = part_with(*rules_.bodies, body, contact);  // the body's frame contains no other surfaces
+    Contact part = part_with(rules_.bodies, body, contact);  // the body's frame contains no other surfaces
     step_.log().note_impact();
     const auto next = follow_in_frame_unsettled(body, &part, [&](ContactPhase& phase) { return phase.stay(part); });
     particle_.state.velocity = own.velocity;

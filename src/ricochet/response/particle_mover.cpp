@@ -51,7 +51,7 @@ MoveOutcome ParticleMover::run() {
 }
 
 std::optional<Contact> ParticleMover::resume_contact() {
-    if (frame_rules_ == nullptr) return contact_phase_.resume();
+    if (rules_.bodies.empty()) return contact_phase_.resume();
     if (!catch_up(step_) || particle_.contact.count == 0) return std::nullopt;
     return resume_among_bodies();
 }
@@ -106,7 +106,7 @@ ParticleMover::ResolvedImpact ParticleMover::resolve_impact(const Flight& flight
     contact_phase_.remember(contact);
     if (impact.meets_moving) {
         ledger().note_driven();
-        impact.slowest_rebound = ricochet::slowest_rebound(rules_, *frame_rules_, particle_, contact);
+        impact.slowest_rebound = ricochet::slowest_rebound(rules_, frame_rules_, particle_, contact);
         impact.is_fast = surfaces().approach(contact.all()) > impact.slowest_rebound;
     }
     step_.set_resting_speed(impact.slowest_rebound);
@@ -141,7 +141,7 @@ void ParticleMover::finish() {
     if (particle_.contact.count == 0) {
         particle_.contact = release_speed_ ? ContactState::release_at(*release_speed_) : ContactState{};
     }
-    if (frame_rules_ != nullptr) keep_stored_position(step_);
+    keep_stored_position(step_);
     ledger().close();
     step_.log().note_impact();
 }

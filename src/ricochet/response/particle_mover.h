@@ -24,8 +24,8 @@ namespace ricochet {
 /// Stages 2 to 4 repeat until the time is used up. Stages 1, 2 and 4 return the contact to which they have led.
 class ParticleMover {
 public:
-    /// frame_rules: null if no collider moves. All must outlive it.
-    ParticleMover(const ResponseRules& rules, const FrameRules* frame_rules, MovingParticle& particle, double duration,
+    /// All must outlive it.
+    ParticleMover(const ResponseRules& rules, const FrameRules& frame_rules, MovingParticle& particle, double duration,
                   MoveScratch& scratch)
         : rules_(rules),
           frame_rules_(frame_rules),
@@ -83,16 +83,15 @@ private:
     [[nodiscard]] bool lands_again(const Contact& contact, double slow) const;
 
     [[nodiscard]] bool meets_moving(const Contact& contact) const {
-        return rules_.bodies != nullptr &&
-               std::any_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
-                   return rules_.bodies->body_of(surface.surface) != kWorldBody;
-               });
+        return std::any_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
+            return rules_.bodies.body_of(surface.surface) != kWorldBody;
+        });
     }
     [[nodiscard]] const SurfaceKinematics& surfaces() const { return step_.impact().surfaces(); }
     [[nodiscard]] ImpulseLedger& ledger() { return step_.impact().ledger(); }
 
     const ResponseRules& rules_;
-    const FrameRules* frame_rules_;
+    const FrameRules& frame_rules_;
     MovingParticle& particle_;
     ParticleStep step_;
     ContactPhase contact_phase_;

@@ -44,7 +44,7 @@ ParticleStep::ParticleStep(const ResponseRules& rules, MovingParticle& particle,
       geometry_(rules.world, scratch.contacts.plane_cache),
       impact_(rules, particle, scratch, outcome_, reference_),
       log_(rules, particle, scratch, reference_),
-      chain_(particle, scratch),
+      chain_(particle, scratch, !rules.bodies.empty()),
       time_(duration),
       resting_speed_(rules.settings.resting_speed) {}
 
@@ -55,16 +55,16 @@ void ParticleStep::enter(BodyId body, const ResponseRules& rules, Contact* conta
     const RecordedMotion motion = reference_.in_frame(
         before.in_world({state().position, state().velocity, particle_.spin}, state().time), state().time);
     const StoredPosition& stored = chain_.stored();
-    const MovingPose pose = reference_.bodies().pose(body, stored.time);
+    const MovingPose pose = rules.bodies.pose(body, stored.time);
     state().position = pose.local_position(stored.position);
     state().velocity = motion.velocity;
     particle_.spin = motion.spin;
     // Positions are stored in the world. So contact needs the offset for the rounding of the world's coordinates.
-    const MotionBounds& bounds = reference_.bodies().bounds(body);
+    const MotionBounds& bounds = rules.bodies.bounds(body);
     const double path_length = remaining() * (bounds.origin[1] + bounds.rotation[1] * length(state().position));
     const double reach = max_abs(stored.position) + path_length + max_abs(pose.world_from_frame.translation);
     double least_offset = contact_offset({reach, 0.0, 0.0});
-    if (reference_.bodies().is_dynamic(body)) {
+    if (rules.bodies.is_dynamic(body)) {
         least_offset = std::max(least_offset, offset_for_carrying(pose, state().position));
     }
     geometry_ = SurfaceGeometry(rules.world, scratch_.contacts.plane_cache, least_offset);
@@ -107,8 +107,8 @@ PathClock ParticleStep::clock_of(const Path& path) const {
 }
 
 bool ParticleStep::is_among_bodies(const Path& path) const {
-    if (rules_->bodies == nullptr) return false;
-    return reference_.is_moving() || !rules_->bodies->all_stay_out(reach_of(path, particle_.state.radius));
+    if (rules_->bodies.empty()) return false;
+    return reference_.is_moving() || !rules_->bodies.all_stay_out(reach_of(path, particle_.state.radius));
 }
 
 }  // namespace ricochet

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "ricochet/collision/contact_scratch.h"
-#include "ricochet/collision/path_point.h"
+#include "ricochet/collision/surfaces_in_time.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/impact_resolver.h"
 #include "ricochet/response/motion_log.h"
@@ -45,12 +45,14 @@ private:
 /// The chain of certified segments on which a particle moves. Segments are recorded if MoveScratch asks for that.
 class SegmentChain {
 public:
-    SegmentChain(const MovingParticle& particle, const MoveScratch& scratch)
-        : stored_{particle.state.position, particle.stored_time} {
+    SegmentChain(const MovingParticle& particle, const MoveScratch& scratch, bool is_timed)
+        : stored_{particle.state.position, particle.stored_time}, is_timed_(is_timed) {
         begin(particle.state.position, scratch);
     }
 
-    /// The position in the world, and its time. The time matters only if colliders move.
+    /// Returns true if colliders move. Otherwise the stored position and the times of segments have no meaning.
+    [[nodiscard]] bool is_timed() const { return is_timed_; }
+    /// The position in the world, and its time.
     [[nodiscard]] const StoredPosition& stored() const { return stored_; }
     void store(const StoredPosition& position) { stored_ = position; }
     /// Adds a segment from the stored position to the next one, and stores that. recorded_at: Segment::time.
@@ -68,6 +70,7 @@ public:
 
 private:
     StoredPosition stored_;
+    bool is_timed_;
     Vec3 start_;
     std::size_t first_segment_ = 0;
 };

@@ -23,25 +23,25 @@ bool can_follow(ParticleStep& step, const Path& path) {
     return false;
 }
 
-MovingView view_along(const ParticleStep& step, const Path& path) {
-    return {*step.rules().bodies, step.reference().body(), step.clock_of(path)};
+SurfacesInTime surfaces_along(const ParticleStep& step, const Path& path) {
+    return {step.rules().bodies, step.reference().body(), step.clock_of(path)};
 }
 
 std::optional<Contact> first_contact_among_bodies(ParticleStep& step, const ContactQuery& query) {
-    const MovingView view = view_along(step, query.path);
-    const PathPoint start = view.stored(step.chain().stored().position, 0.0);
-    return MovingSweep(view, step.geometry(), query, start, step.scratch().contacts).first_contact();
+    const SurfacesInTime surfaces = surfaces_along(step, query.path);
+    const PathPoint start = surfaces.stored(step.chain().stored().position);
+    return MovingSweep(surfaces, step.geometry(), query, start, step.scratch().contacts).first_contact();
 }
 
 /// Follows a path among moving colliders, piece by piece, up to a contact.
 PathProgress follow_among_bodies(ParticleStep& step, const ContactQuery& query) {
-    const MovingView view = view_along(step, query.path);
-    const PathPoint start = view.stored(step.chain().stored().position, 0.0);
-    MovingSweep sweep(view, step.geometry(), query, start, step.scratch().contacts);
+    const SurfacesInTime surfaces = surfaces_along(step, query.path);
+    const PathPoint start = surfaces.stored(step.chain().stored().position);
+    MovingSweep sweep(surfaces, step.geometry(), query, start, step.scratch().contacts);
     PathProgress progress;
     while (!sweep.is_done() && !progress.contact) {
         const double begin = sweep.begin();
-        ContactQueryResult found = sweep.sweep(view.stored(step.chain().stored().position, begin));
+        ContactQueryResult found = sweep.sweep(surfaces.stored(step.chain().stored().position, begin));
         const ContactQuery of_piece{sweep.path(), query.radius, nullptr, {}, query.supports};
         const double elapsed = move_certified_within(step, of_piece, found, sweep.clock());
         if (found.contact) progress.contact = found.contact;

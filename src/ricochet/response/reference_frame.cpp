@@ -51,14 +51,8 @@ Vec3 FrameForces::spin_change(const Vec3& spin, double time) const {
 FrameRules::BodyRules::BodyRules(const ResponseRules& rules_at_rest, BodyId body, std::unique_ptr<FrameForces> seen)
     : frame(*seen),
       forces(only(std::move(seen)), false),
-      rules{rules_at_rest.bodies->world(body),
-            forces,
-            rules_at_rest.materials,
-            rules_at_rest.settings,
-            rules_at_rest.end,
-            false,
-            rules_at_rest.bodies,
-            &frame} {}
+      rules{rules_at_rest.bodies.world(body), rules_at_rest.bodies, forces, rules_at_rest.materials,
+            rules_at_rest.settings,           rules_at_rest.end,    false,  &frame} {}
 
 std::vector<std::unique_ptr<Force>> FrameRules::BodyRules::only(std::unique_ptr<FrameForces> force) {
     std::vector<std::unique_ptr<Force>> all;
@@ -67,9 +61,9 @@ std::vector<std::unique_ptr<Force>> FrameRules::BodyRules::only(std::unique_ptr<
 }
 
 FrameRules::FrameRules(const ResponseRules& rules) {
-    for (BodyId body = 0; rules.bodies != nullptr && body < rules.bodies->size(); ++body) {
+    for (BodyId body = 0; body < rules.bodies.size(); ++body) {
         frame_rules_.push_back(
-            std::make_unique<BodyRules>(rules, body, std::make_unique<FrameForces>(rules.forces, *rules.bodies, body)));
+            std::make_unique<BodyRules>(rules, body, std::make_unique<FrameForces>(rules.forces, rules.bodies, body)));
     }
 }
 

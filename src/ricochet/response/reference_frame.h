@@ -15,19 +15,17 @@ namespace ricochet {
 /// The frame in which a particle's motion is given: the world, or a body's.
 class ReferenceFrame {
 public:
-    /// bodies: null if no collider moves.
-    explicit ReferenceFrame(const MovingColliders* bodies) : bodies_(bodies) {}
-    /// Returns the world's frame in a scene in which no collider moves.
+    /// The bodies must outlive it.
+    explicit ReferenceFrame(const MovingColliders& bodies, BodyId body = kWorldBody) : bodies_(&bodies), body_(body) {}
+    /// Returns a frame that is always the world's.
     [[nodiscard]] static const ReferenceFrame& world() {
-        static const ReferenceFrame frame(nullptr);
+        static const ReferenceFrame frame;
         return frame;
     }
 
     [[nodiscard]] BodyId body() const { return body_; }
     [[nodiscard]] bool is_moving() const { return body_ != kWorldBody; }
     void set(BodyId body) { body_ = body; }
-    /// Only if colliders move.
-    [[nodiscard]] const MovingColliders& bodies() const { return *bodies_; }
 
     /// Transforms a motion from the frame into the world at a time, in s.
     [[nodiscard]] RecordedMotion in_world(const RecordedMotion& motion, double time) const;
@@ -38,7 +36,9 @@ public:
     [[nodiscard]] Vec3 direction_in_frame(const Vec3& d, double time) const;
 
 private:
-    const MovingColliders* bodies_;
+    ReferenceFrame() = default;
+
+    const MovingColliders* bodies_ = nullptr;
     BodyId body_ = kWorldBody;
 };
 

@@ -101,9 +101,7 @@ void Response::apply_correction(MovingParticle& particle, const Vec3& change, do
     MoveOutcome outcome;
     ImpactResolver impact(rules_, particle, scratch, outcome);
     Vec3 corrections = change;
-    const bool is_carried = rules_.bodies != nullptr && particle.contact.count > 0 &&
-                            rules_.bodies->body_of(particle.contact.surfaces[0]) != kWorldBody;
-    if (is_carried) {
+    if (particle.contact.count > 0 && rules_.bodies.body_of(particle.contact.surfaces[0]) != kWorldBody) {
         // The particle moves with its body, which takes the late correction.
         impact.ledger().record_impulse(particle.contact.surfaces[0], -corrections, false, Vec3{});
         impact.ledger().close();

@@ -202,15 +202,15 @@ struct ChildStart {
                            ///< begins
 };
 
-/// Rules of a run for a response. World, forces and materials must outlive it.
+/// Rules of a run for a response. World, bodies, forces and materials must outlive it.
 struct ResponseRules {
-    const CollisionWorld& world;
+    const CollisionWorld& world;    ///< colliders of the reference frame
+    const MovingColliders& bodies;  ///< colliders of all frames
     const ForceField& forces;
     std::span<const Material> materials;
     ResponseSettings settings;
     double end = std::numeric_limits<double>::infinity();  ///< s, end of the run; later times do not matter
     bool look_ahead = true;                                ///< compute MoveOutcome::free_for
-    const MovingColliders* bodies = nullptr;               ///< null if no collider moves
     /// Frame of a body, in which `world` and `forces` are given; null in the world.
     const FrameForces* frame = nullptr;
     const StopToken* stop = nullptr;  ///< null: the step cannot be stopped

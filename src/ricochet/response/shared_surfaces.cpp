@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/contact_manifold.h"
 #include "ricochet/response/curved_contact.h"
@@ -21,14 +23,11 @@ Vec3 rim_of(const CollisionWorld& world, SurfaceId triangle, const Vec3& positio
 
 }  // namespace
 
-MovingView SharedSurfaces::view_at(double time) const { return {bodies(), kWorldBody, {time, time, time, 0.0, 0.0}}; }
-
 void SharedSurfaces::gather() {
     const Vec3& position = step_.state().position;
-    const double margin = step_.state().radius + kEdgeOffsets * contact_offset(position);
-    const Vec3 by{margin, margin, margin};
     std::vector<BodyId> near{kWorldBody};
-    bodies().near({position - by, position + by}, kWorldBody, near);
+    const double margin = step_.state().radius + kEdgeOffsets * contact_offset(position);
+    bodies().near(ball_box(position, margin), kWorldBody, near);
     count_ = 0;
     for (const BodyId body : near) gather_in(body);
     gather_deforming();
@@ -38,23 +37,18 @@ void SharedSurfaces::gather_deforming() {
     const ForceInput& state = step_.state();
     for (const DeformedContact& contact : touched_surfaces(deforming(), state, step_.resting_speed())) {
         if (count_ == kMostSupports) return;
-        SharedSurface& touched = surfaces_[count_++];
-        touched.surface = contact.surface;
-        touched.others = contact.all;
-        touched.body = bodies().body_of(contact.surface.surface);
-        touched.velocity = kinematics().velocity_of(contact.surface);
-        touched.turning = deforming().motion_at(contact.surface.surface, state.position, state.time).turning;
+        add(contact.surface).others = contact.all;
     }
 }
 
 void SharedSurfaces::gather_in(BodyId body) {
     const ForceInput& state = step_.state();
-    const MovingView view = view_at(state.time);
+    const SurfacesInTime now = surfaces_at(state.time);
     const CollisionWorld& world = bodies().world(body);
     if (world.empty()) return;
     ForceInput seen = state;
-    seen.position = view.local_position(body, state.position, 0.0);
-    seen.velocity = view.velocity_in(body, {state.position, 0.0, state.position}, state.velocity);
+    seen.position = now.local_position(body, state.position, 0.0);
+    seen.velocity = now.velocity_in(body, now.stored(state.position), state.velocity);
     TrianglePlaneCache planes;
     const SurfaceGeometry geometry(world, planes);
     ContactManifold manifold(geometry, seen);
@@ -63,9 +57,9 @@ void SharedSurfaces::gather_in(BodyId body) {
     const TouchRule rule{reach, reach, reach, step_.resting_speed()};
     visit_near_in(step_, geometry, seen.position, reach, [&](SurfaceId surface) { manifold.touch(surface, rule); });
     for (std::size_t k = 0; k < manifold.size() && count_ < kMostSupports; ++k) {
-        SharedSurface& touched = surfaces_[count_++];
-        touched.surface = manifold[k];
-        touched.others.clear();
+        ContactSurface surface = manifold[k];
+        surface.normal = now.direction_from(body, surface.normal, 0.0);
+        SharedSurface& touched = add(surface);
         if (!manifold[k].flat && !world.is_shape(manifold[k].surface)) {
             const Vec3 rim = rim_of(world, manifold[k].surface, seen.position);
             visit_near_in(step_, geometry, seen.position, reach, [&](SurfaceId other) {
@@ -73,11 +67,18 @@ void SharedSurfaces::gather_in(BodyId body) {
                 if (length(rim_of(world, other, seen.position) - rim) <= reach) touched.others.push_back(other);
             });
         }
-        touched.surface.normal = view.direction_from(body, manifold[k].normal, 0.0);
-        touched.body = body;
-        touched.velocity = kinematics().velocity_of(touched.surface);
-        touched.turning = bodies().pose(body, state.time).angular_velocity;
     }
+}
+
+SharedSurface& SharedSurfaces::add(const ContactSurface& surface) {
+    const SurfacesInTime now = surfaces_at(step_.state().time);
+    SharedSurface& touched = surfaces_[count_++];
+    touched.surface = surface;
+    touched.others.clear();
+    touched.body = bodies().body_of(surface.surface);
+    touched.velocity = kinematics().velocity_of(surface);
+    touched.turning = now.angular_velocity_of(surface.surface, now.stored(step_.state().position));
+    return touched;
 }
 
 bool SharedSurfaces::is_any_deforming() const {
@@ -112,7 +113,7 @@ SupportSurface SharedSurfaces::constraint(const SharedSurface& touched, const Ve
     result.slip_curvature = dot(change, n) * n - change;
     if (touched.surface.flat) return result;
     ForceInput seen = state;
-    seen.position = view_at(state.time).local_position(touched.body, state.position, 0.0);
+    seen.position = surfaces_at(state.time).local_position(touched.body, state.position, 0.0);
     TrianglePlaneCache planes;
     const SurfaceGeometry geometry(bodies().world(touched.body), planes);
     const ContactSurface in_frame{touched.surface.surface, pose.local_direction(n), false};
@@ -122,25 +123,26 @@ SupportSurface SharedSurfaces::constraint(const SharedSurface& touched, const Ve
 
 SharedSurfaces::Height SharedSurfaces::height_above(const SharedSurface& touched, const Vec3& position,
                                                     double time) const {
-    if (deforms(touched)) {
-        const auto [normal, above] =
-            ricochet::height_above(deforming(), {touched.surface, touched.others}, position, time);
-        return {normal, above, 2.0 * deforming().offset_of(touched.surface.surface)};
+    const SurfacesInTime then = surfaces_at(time);
+    const PathPoint p = then.stored(position);
+    SurfaceId surface = touched.surface.surface;
+    const bool is_extended = touched.surface.flat || then.is_shape(surface);
+    CollisionWorld::Nearest nearest;
+    nearest.distance = std::numeric_limits<double>::infinity();
+    if (deforms(touched)) {  // the particle may have gone on to another triangle of the contact
+        for (const SurfaceId other : touched.others) {
+            const CollisionWorld::Nearest there = then.nearest(other, p);
+            if (!(there.distance < nearest.distance)) continue;
+            nearest = there;
+            surface = other;
+        }
+    } else if (!is_extended) {
+        nearest = then.nearest(surface, p);
     }
-    const MovingView view = view_at(time);
-    const CollisionWorld& world = bodies().world(touched.body);
-    const SurfaceId surface = touched.surface.surface;
-    const Vec3 local_position = view.local_position(touched.body, position, 0.0);
-    Vec3 normal = world.unit_normal_of(surface, local_position);
-    double height = world.signed_distance_from(surface, local_position);
-    if (!touched.surface.flat && !world.is_shape(surface)) {
-        const CollisionWorld::Nearest nearest = world.nearest(surface, local_position);
-        normal = nearest.normal;
-        height = nearest.distance;
-    }
-    normal = view.direction_from(touched.body, normal, 0.0);
+    const Vec3 normal = is_extended ? then.unit_normal_of(surface, p) : nearest.normal;
+    const double height = is_extended ? then.signed_distance_from(surface, p) : nearest.distance;
     const double side = dot(normal, touched.surface.normal) < 0.0 ? -1.0 : 1.0;
-    return {side * normal, side * height, 2.0 * std::max(contact_offset(position), contact_offset(local_position))};
+    return {side * normal, side * height, 2.0 * then.offset_at(touched.surface.surface, p)};
 }
 
 double SharedSurfaces::longest_interval() const {
@@ -177,7 +179,7 @@ std::vector<SurfaceId> SharedSurfaces::supporting(const Path& path) const {
         }
         list.push_back(touched.surface.surface);
         const CollisionWorld& world = bodies().world(touched.body);
-        const Vec3 local_position = view_at(end).local_position(touched.body, path.end, 0.0);
+        const Vec3 local_position = surfaces_at(end).local_position(touched.body, path.end, 0.0);
         std::copy_if(touched.others.begin(), touched.others.end(), std::back_inserter(list), [&](SurfaceId other) {
             return world.nearest(other, local_position).distance >= step_.state().radius;
         });

@@ -84,8 +84,9 @@ private:
     void gather_in(BodyId body);
     void gather_deforming();
     [[nodiscard]] bool continues_one(const ContactSurface& surface) const;
-    [[nodiscard]] MovingView view_at(double time) const;
-    [[nodiscard]] const MovingColliders& bodies() const { return *step_.rules().bodies; }
+    SharedSurface& add(const ContactSurface& surface);
+    [[nodiscard]] SurfacesInTime surfaces_at(double time) const { return {bodies(), kWorldBody, time}; }
+    [[nodiscard]] const MovingColliders& bodies() const { return step_.rules().bodies; }
     [[nodiscard]] const SurfaceKinematics& kinematics() const { return step_.impact().surfaces(); }
 
     const ParticleStep& step_;

@@ -31,9 +31,7 @@ SupportedAcceleration acceleration_on(const ResponseRules& rules, const MovingPa
 SupportedAcceleration acceleration_in_contact(const ResponseRules& rules, const MovingParticle& particle,
                                               const Vec3& pull, const TouchRule& rule) {
     const ContactState& contact_state = particle.contact;
-    const auto moves = [&](SurfaceId surface) {
-        return rules.bodies != nullptr && rules.bodies->body_of(surface) != kWorldBody;
-    };
+    const auto moves = [&](SurfaceId surface) { return rules.bodies.body_of(surface) != kWorldBody; };
     if (contact_state.count == 0 ||
         std::any_of(contact_state.surfaces.begin(), contact_state.surfaces.begin() + contact_state.count, moves))
         return {pull};

@@ -32,50 +32,39 @@ ImpactSurface SurfaceKinematics::landing_on(const ContactSurface& surface) const
 
 /// Returns the velocity of the contact point of a body, and of its material there.
 Vec3 SurfaceKinematics::carried_velocity_of(const ContactSurface& surface, const Vec3& center) const {
-    const MovingColliders& bodies = reference_.bodies();
-    const double time = particle_.state.time;
-    const BodyId body = bodies.body_of(surface.surface);
-    const MovingView view(bodies, reference_.body(), {time, time, time, 0.0, 0.0});
-    const PathPoint foot = view.point_at(center - particle_.state.radius * surface.normal, 0.0);
-    Vec3 velocity = view.velocity_of(body, foot);
-    if (bodies.is_dynamic(body)) {
-        velocity += reference_.direction_in_frame(velocity_beside_path(body, foot.world), time);
-    }
-    if (bodies.is_deforming(body)) {
-        // The frame's own velocity is part of `velocity` already. Only the axes change.
-        velocity += reference_.direction_in_frame(
-            bodies.deforming().motion_at(surface.surface, foot.world, time).velocity, time);
+    const BodyId body = rules_.bodies.body_of(surface.surface);
+    const SurfacesInTime now(rules_.bodies, reference_.body(), particle_.state.time);
+    const PathPoint foot = now.point_at(center - particle_.state.radius * surface.normal, 0.0);
+    Vec3 velocity = now.velocity_of(surface.surface, foot);
+    if (rules_.bodies.is_dynamic(body)) {
+        velocity += now.direction_from(kWorldBody, velocity_beside_path(body, foot.world), 0.0);
     }
     const Material& material = material_of(surface.surface);
     if (!material.drives()) return velocity;
-    const MovingView seen(bodies, body, view.clock());
-    const Vec3 along = material.motion.at(view.local_position(body, foot.world, 0.0),
+    const SurfacesInTime seen(rules_.bodies, body, particle_.state.time);
+    const Vec3 along = material.motion.at(seen.stored(foot.world).position,
                                           seen.direction_from(reference_.body(), surface.normal, 0.0));
-    return velocity + view.direction_from(body, along, 0.0);
+    return velocity + now.direction_from(body, along, 0.0);
 }
 
 Vec3 SurfaceKinematics::carried_angular_velocity_of(SurfaceId surface) const {
-    const MovingColliders& bodies = reference_.bodies();
     const double time = particle_.state.time;
-    const BodyId body = bodies.body_of(surface);
-    const MovingView view(bodies, reference_.body(), {time, time, time, 0.0, 0.0});
+    const SurfacesInTime now(rules_.bodies, reference_.body(), time);
     const Material& material = material_of(surface);
     const Vec3 of_material =
-        material.drives() ? view.direction_from(body, material.motion.angular_velocity, 0.0) : Vec3{};
-    Vec3 of_body = bodies.pose(body, time).angular_velocity - bodies.pose(reference_.body(), time).angular_velocity;
-    if (bodies.is_deforming(body)) {
-        const Vec3 center = reference_.in_world({particle_.state.position, {}, {}}, time).position;
-        of_body += bodies.deforming().motion_at(surface, center, time).turning;
-    }
-    return of_material + reference_.direction_in_frame(of_body, time);
+        material.drives() ? now.direction_from(rules_.bodies.body_of(surface), material.motion.angular_velocity, 0.0)
+                          : Vec3{};
+    const Vec3& center = particle_.state.position;
+    const Vec3 world = reference_.in_world({center, {}, {}}, time).position;
+    return of_material + now.angular_velocity_of(surface, {center, 0.0, world});
 }
 
 /// Returns the velocity of a body's point beside the body's path, in the world. It has two causes: impulses that the
 /// particle has given to the body, and an angular velocity beside the path.
 Vec3 SurfaceKinematics::velocity_beside_path(BodyId body, const Vec3& point) const {
     const double time = particle_.state.time;
-    const Vec3 turning = reference_.bodies().turning_beside_path(body, time);
-    const Mobility mobility = reference_.bodies().mobility(body, time);
+    const Vec3 turning = rules_.bodies.turning_beside_path(body, time);
+    const Mobility mobility = rules_.bodies.mobility(body, time);
     Vec3 velocity;
     if (turning != Vec3{}) velocity = cross(turning, point - mobility.center);
     for (const Given& given : given_) {
@@ -89,7 +78,7 @@ double SurfaceKinematics::advance_beside_path(const ContactSurface& surface) con
     const double time = particle_.state.time;
     const Vec3 foot = particle_.state.position - particle_.state.radius * surface.normal;
     const Vec3 point = reference_.in_world({foot, {}, {}}, time).position;
-    const Vec3 beside = velocity_beside_path(reference_.bodies().body_of(surface.surface), point);
+    const Vec3 beside = velocity_beside_path(rules_.bodies.body_of(surface.surface), point);
     return dot(reference_.direction_in_frame(beside, time), surface.normal);
 }
 
@@ -108,7 +97,7 @@ bool SurfaceKinematics::approaches_pushed_body(std::span<const ContactSurface> s
     return !given_.empty() && std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& surface) {
         if (!is_dynamic(surface.surface)) return false;
         const Vec3 point = particle_.state.position - particle_.state.radius * surface.normal;
-        const Vec3 given = velocity_beside_path(reference_.bodies().body_of(surface.surface), point);
+        const Vec3 given = velocity_beside_path(rules_.bodies.body_of(surface.surface), point);
         const double rounding = kStopRounding * (length(particle_.state.velocity) + length(velocity_of(surface)));
         return separation_speed(surface) + dot(given, surface.normal) < rounding;
     });

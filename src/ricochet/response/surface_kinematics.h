@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "ricochet/collision/surfaces_in_time.h"
 #include "ricochet/response/impact_problem.h"
 #include "ricochet/response/reference_frame.h"
 #include "ricochet/response/response.h"
@@ -27,10 +28,10 @@ public:
     }
     /// Returns true for a surface of a body that moves relative to the reference frame.
     [[nodiscard]] bool is_carried(SurfaceId surface) const {
-        return rules_.bodies != nullptr && rules_.bodies->body_of(surface) != reference_.body();
+        return rules_.bodies.body_of(surface) != reference_.body();
     }
     [[nodiscard]] bool is_dynamic(SurfaceId surface) const {
-        return rules_.bodies != nullptr && rules_.bodies->is_dynamic(rules_.bodies->body_of(surface));
+        return rules_.bodies.is_dynamic(rules_.bodies.body_of(surface));
     }
 
     /// Returns the velocity of the surface's material at the contact, as far as it grips. See SurfaceMotion.

@@ -33,8 +33,8 @@ bool is_near_dynamic_body(const ResponseRules& rules, const ForceInput& state, d
     const Vec3 by{reach, reach, reach};
     const Box3 box{state.position - by, state.position + by};
     std::vector<BodyId> near;
-    rules.bodies->near(box, kWorldBody, near);
-    return std::any_of(near.begin(), near.end(), [&](BodyId body) { return rules.bodies->is_dynamic(body); });
+    rules.bodies.near(box, kWorldBody, near);
+    return std::any_of(near.begin(), near.end(), [&](BodyId body) { return rules.bodies.is_dynamic(body); });
 }
 
 void prefetch_triangles(const ContactCandidates& candidates, const CollisionWorld& world) {
@@ -145,8 +145,8 @@ void ActiveMover::grow_core(std::size_t i, double time) {
     if (particles.support[i][0] != kNoSupport) return;
     const Vec3& position = particles.position[i];
     const double radius = particles.radius[i];
-    const std::optional<Overlap> overlap = deepest_overlap(response_.rules().world, response_.rules().bodies, position,
-                                                           radius, store.stored_time(i, time));
+    const std::optional<Overlap> overlap =
+        deepest_overlap(response_.rules().bodies, position, radius, store.stored_time(i, time));
     if (overlap) {
         const double core = core_radius(*overlap, position, radius);
         store.cores().set(i, std::max(store.cores().radius(i), core), store.size());

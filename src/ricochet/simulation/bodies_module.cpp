@@ -38,7 +38,7 @@ double BodiesModule::plan(const ParticleRange& generation, const TimeSpan& rest)
 double BodiesModule::plan_new(const ParticleRange& generation, const TimeSpan& rest) {
     const TimeSpan part{rest.begin, motion_.next_substep_end(rest.begin, rest.end)};
     motion_.plan(part.begin, part.end, oldest_position());
-    return parts_.scene.moving() != nullptr ? settle(generation, part) : part.end;
+    return !parts_.scene.moving().empty() ? settle(generation, part) : part.end;
 }
 
 /// Plans a substep until the planned loads agree with the loads that the particles exert in it. Returns its end.

@@ -55,15 +55,15 @@ bool jumps(const BodyPath& before, const BodyPath& after) {
 
 }  // namespace
 
-BodyPaths::BodyPaths(const std::vector<DrivenBody>& bodies, FrameTree* frames, MovingColliders* colliders,
+BodyPaths::BodyPaths(const std::vector<DrivenBody>& bodies, FrameTree* frames, MovingColliders& colliders,
                      const ForceField& forces)
-    : bodies_(bodies), frames_(frames), colliders_(colliders), forces_(forces), shares_(bodies.size(), 1.0) {
+    : bodies_(bodies), frames_(frames), colliders_(&colliders), forces_(forces), shares_(bodies.size(), 1.0) {
     for (const DrivenBody& body : bodies) {
         const std::size_t frame = frames_->find(body.description().frame).value();
         frame_of_.push_back(frame);
         BodyId id = 0;
-        while (colliders_ != nullptr && id < colliders_->size() && colliders_->frame_of(id) != frame) ++id;
-        const bool has_colliders = colliders_ != nullptr && id < colliders_->size();
+        while (id < colliders.size() && colliders.frame_of(id) != frame) ++id;
+        const bool has_colliders = id < colliders.size();
         collider_of_.push_back(has_colliders ? id : kWorldBody);
         if (has_colliders) colliders_->set_mobility(id, body.mobility());
     }

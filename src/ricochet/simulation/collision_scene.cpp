@@ -12,21 +12,19 @@
 namespace ricochet {
 namespace {
 
-/// Also tests the colliders in moving frames, with their poses at a time, in s. bodies: null if there are none.
-bool is_clear_at(const CollisionWorld& world, const MovingColliders* bodies, double time, const Vec3& from,
-                 const Vec3& to) {
+/// Also tests the colliders in moving frames, with their poses at a time, in s.
+bool is_clear_at(const MovingColliders& bodies, double time, const Vec3& from, const Vec3& to) {
     ContactScratch scratch;
-    if (!is_clear(world, scratch, from, to)) return false;
-    if (bodies == nullptr) return true;
+    if (!is_clear(bodies.world(kWorldBody), scratch, from, to)) return false;
     Box3 box;
     box.include(from);
     box.include(to);
     std::vector<BodyId> near;
-    bodies->near_at(box, time, near);
+    bodies.near_at(box, time, near);
     for (const BodyId body : near) {
         ContactScratch own;
-        if (!is_clear(bodies->world(body), own, bodies->local_position(body, from, time),
-                      bodies->local_position(body, to, time))) {
+        if (!is_clear(bodies.world(body), own, bodies.local_position(body, from, time),
+                      bodies.local_position(body, to, time))) {
             return false;
         }
     }
@@ -43,41 +41,38 @@ CollisionScene::CollisionScene(std::vector<ColliderDescription> colliders, std::
       list_(std::make_shared<ColliderList>(std::move(colliders))),
       world_(std::make_shared<CollisionWorld>(list_, std::string_view(), chord_margin)),
       frames_(frames ? std::make_shared<FrameTree>(*frames) : nullptr),
-      moving_(std::make_unique<MovingColliders>(*world_, list_, frames_, kChordMargin)) {
-    if (moving_->empty()) moving_.reset();
-}
+      moving_(*world_, frames_) {}
 
 bool CollisionScene::has_loads() const {
-    return moving_ || std::any_of(materials_.begin(), materials_.end(), [](const Material& m) { return m.drives(); });
+    return !moving_.empty() ||
+           std::any_of(materials_.begin(), materials_.end(), [](const Material& m) { return m.drives(); });
 }
 
 void CollisionScene::set_culling(bool culls) {
     world_->set_culling(culls);
-    if (moving_) moving_->set_culling(culls);
+    moving_.set_culling(culls);
 }
 
-void CollisionScene::begin_step(const TimeSpan& step) {
-    if (moving_) moving_->begin_step(step.begin, step.end);
-}
+void CollisionScene::begin_step(const TimeSpan& step) { moving_.begin_step(step.begin, step.end); }
 
 void CollisionScene::prepare_radius(double radius) {
     world_->prepare_radius(radius);
-    if (moving_) moving_->prepare_radius(radius);
+    moving_.prepare_radius(radius);
 }
 
 std::optional<Overlap> CollisionScene::overlap_of(const Particle& particle) const {
     const Vec3 position = flush_tiny(particle.position);
     if (!is_in_range(position)) return std::nullopt;
-    return deepest_overlap(*world_, moving_.get(), position, particle.radius, particle.birth_time);
+    return deepest_overlap(moving_, position, particle.radius, particle.birth_time);
 }
 
 bool CollisionScene::has_room_beside(const Particle& parent, const Particle& child) const {
     const Vec3 position = flush_tiny(child.position);
-    return is_clear_at(*world_, moving_.get(), child.birth_time, parent.position, position) && !overlap_of(child);
+    return is_clear_at(moving_, child.birth_time, parent.position, position) && !overlap_of(child);
 }
 
 const CollisionWorld& CollisionScene::world_of(std::size_t collider) const {
-    return moving_ && !is_deforming(collider) ? moving_->world(moving_->body_of_collider(collider)) : *world_;
+    return is_deforming(collider) ? *world_ : moving_.world(moving_.body_of_collider(collider));
 }
 
 std::optional<TriangleMesh> CollisionScene::mesh_of(std::size_t collider, double time) const {
@@ -86,18 +81,18 @@ std::optional<TriangleMesh> CollisionScene::mesh_of(std::size_t collider, double
     if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
         return cylinder_mesh(cylinder->radius, cylinder->height, cylinder->placement);
     }
-    if (is_deforming(collider)) return moving_->deforming().mesh_at(collider, time);
+    if (is_deforming(collider)) return moving_.deforming().mesh(collider).mesh_at(time);
     return world_of(collider).mesh_of(collider);
 }
 
 MovingPose CollisionScene::pose_of(std::size_t collider, double time) const {
-    return moving_ ? moving_->pose(moving_->body_of_collider(collider), time) : MovingPose{};
+    return moving_.pose(moving_.body_of_collider(collider), time);
 }
 
 SurfacePosition CollisionScene::closest_point(SurfaceId surface, const Vec3& position, double time) const {
     const std::uint32_t collider = world_->name_of(surface).collider;
     if (is_deforming(collider)) {
-        const auto [a, b, c] = moving_->deforming().corners_at(surface, time);
+        const auto [a, b, c] = moving_.deforming().triangle_at(surface, time);
         const ClosestPointOnTriangle closest = closest_point_on_triangle(position, a, b, c);
         return {closest.point, barycentric_coordinates(closest, a, b, c)};
     }
@@ -112,15 +107,13 @@ SurfacePosition CollisionScene::closest_point(SurfaceId surface, const Vec3& pos
 template <class Visit>
 void CollisionScene::visit_worlds(const Visit& visit) const {
     visit(*world_);
-    for (BodyId body = 0; moving_ && body < moving_->size(); ++body) visit(moving_->world(body));
+    for (BodyId body = 0; body < moving_.size(); ++body) visit(moving_.world(body));
 }
 
 std::size_t CollisionScene::triangle_count() const {
     std::size_t count = 0;
     visit_worlds([&](const CollisionWorld& of) { count += of.triangles().size(); });
-    for (std::size_t k = 0; k < list_->all().size(); ++k) {
-        if (is_deforming(k)) count += moving_->deforming().triangles_of(k).size();
-    }
+    for (const DeformingMesh& mesh : moving_.deforming().all()) count += mesh.triangles().size();
     return count;
 }
 
@@ -148,18 +141,17 @@ std::uint64_t CollisionScene::computed_hash() const {
         add_triangles(of.triangles());
     };
     add(*world_);
-    for (BodyId body = 0; moving_ && body < moving_->size(); ++body) {
-        add(moving_->world(body));
-        hash.add(moving_->frames()->hash(moving_->frame_of(body)));
+    for (BodyId body = 0; body < moving_.size(); ++body) {
+        add(moving_.world(body));
+        hash.add(moving_.frames()->hash(moving_.frame_of(body)));
     }
-    for (std::size_t k = 0; moving_ && k < list_->all().size(); ++k) {
-        hash.add(static_cast<std::uint64_t>(moving_->body_of_collider(k)));
+    for (std::size_t k = 0; !moving_.empty() && k < list_->all().size(); ++k) {
+        hash.add(static_cast<std::uint64_t>(moving_.body_of_collider(k)));
     }
-    for (std::size_t k = 0; k < list_->all().size(); ++k) {
-        if (!is_deforming(k)) continue;
-        const MeshMotion& motion = moving_->deforming().motion_of(k);
+    for (const DeformingMesh& mesh : moving_.deforming().all()) {
+        const MeshMotion& motion = *mesh.motion();
         hash.add(static_cast<double>(motion.ends() == MeshEnds::repeat));
-        add_triangles(moving_->deforming().triangles_of(k));
+        add_triangles(mesh.triangles());
         for (std::size_t key = 0; key < motion.key_count(); ++key) {
             hash.add(motion.times()[key]);
             for (const Vec3& vertex : motion.positions(key)) hash.add(vertex);

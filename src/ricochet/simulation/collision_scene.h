@@ -31,9 +31,9 @@ public:
     /// Returns the colliders at rest, which also know the names of all surfaces.
     [[nodiscard]] const CollisionWorld& world() const { return *world_; }
     [[nodiscard]] std::shared_ptr<const CollisionWorld> shared_world() const { return world_; }
-    /// Returns the other colliders, or null if there are none.
-    [[nodiscard]] MovingColliders* moving() { return moving_.get(); }
-    [[nodiscard]] const MovingColliders* moving() const { return moving_.get(); }
+    /// Returns the colliders in all frames, at rest and moving.
+    [[nodiscard]] MovingColliders& moving() { return moving_; }
+    [[nodiscard]] const MovingColliders& moving() const { return moving_; }
     [[nodiscard]] FrameTree* frames() { return frames_.get(); }
     [[nodiscard]] const ColliderList& list() const { return *list_; }
     [[nodiscard]] const std::vector<Material>& materials() const { return materials_; }
@@ -71,9 +71,7 @@ public:
     [[nodiscard]] std::uint64_t shared_bytes() const { return shared_bytes_; }
 
 private:
-    [[nodiscard]] bool is_deforming(std::size_t collider) const {
-        return moving_ && moving_->deforming().is_mesh(collider);
-    }
+    [[nodiscard]] bool is_deforming(std::size_t collider) const { return moving_.deforming().is_mesh(collider); }
     /// Calls visit(world) for the world at rest and for that of each frame.
     template <class Visit>
     void visit_worlds(const Visit& visit) const;
@@ -83,7 +81,7 @@ private:
     std::shared_ptr<ColliderList> list_;
     std::shared_ptr<CollisionWorld> world_;
     std::shared_ptr<FrameTree> frames_;
-    std::unique_ptr<MovingColliders> moving_;
+    MovingColliders moving_;
     mutable std::optional<std::uint64_t> hash_;  // once it is known; it does not change
     std::uint64_t shared_bytes_ = 0;
 };

@@ -66,7 +66,7 @@ void ContactIslands::collect_members(std::vector<IslandMember>& members, Work& w
     for (IslandMember& member : members) {
         const double duration = std::max(0.0, member.end - member.moving.state.time);
         member.moving.step_end = member.end;
-        const bool is_pinched = parts_.response.rules().bodies != nullptr && !member.is_fixed &&
+        const bool is_pinched = !parts_.response.rules().bodies.empty() && !member.is_fixed &&
                                 member.moving.stored_time < member.moving.state.time;
         const bool sleeps = contacts_.sleeps(member.particle);
         work.members.push_back({&member.moving, member.radius(), member.is_fixed, duration, is_pinched, sleeps});

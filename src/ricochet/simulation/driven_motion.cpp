@@ -34,7 +34,7 @@ std::vector<DrivenBody> make_bodies(std::vector<BodyDescription> descriptions, c
 
 }  // namespace
 
-DrivenMotion::DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frames, MovingColliders* colliders,
+DrivenMotion::DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frames, MovingColliders& colliders,
                            const ForceField& forces, const ResponseSettings& settings)
     : bodies_(make_bodies(std::move(bodies), frames)),
       paths_(bodies_, frames, colliders, forces),

@@ -31,7 +31,7 @@ namespace ricochet {
 class BodyPaths {
 public:
     /// frames: contains the frames of the bodies. colliders: null if no collider moves. All must outlive it.
-    BodyPaths(const std::vector<DrivenBody>& bodies, FrameTree* frames, MovingColliders* colliders,
+    BodyPaths(const std::vector<DrivenBody>& bodies, FrameTree* frames, MovingColliders& colliders,
               const ForceField& forces);
 
     /// Returns the paths of a body, as far back as they may be needed. The last one is planned.
@@ -96,7 +96,7 @@ class DrivenMotion {
 public:
     /// frames and colliders: contain the bodies' frames and colliders; null if there are none. All must outlive it.
     /// Throws InputError for invalid descriptions.
-    DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frames, MovingColliders* colliders,
+    DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frames, MovingColliders& colliders,
                  const ForceField& forces, const ResponseSettings& settings);
 
     [[nodiscard]] bool is_active() const { return !bodies_.empty(); }

@@ -57,7 +57,7 @@ double FrictionMeter::work_of_forces(const MotionPart& part, const ForceInput& m
     const Vec3 middle_velocity =
         (1.5 / part.duration) * displacement - 0.25 * (part.begin.velocity + part.end.velocity);
     std::array<Vec3, 3> forces = part.forces;
-    if (bodies_ != nullptr && part.kind == MotionPart::Kind::driven) {
+    if (!bodies_.empty() && part.kind == MotionPart::Kind::driven) {
         ForceInput input = moved;
         const auto at = [&](double time, const Vec3& position, const Vec3& velocity) {
             input.time = time, input.position = position, input.velocity = velocity;
@@ -77,7 +77,7 @@ double FrictionMeter::work_of_forces(const MotionPart& part, const ForceInput& m
             dot(forces[2], part.end.velocity));
 }
 
-HeatStage::HeatStage(HeatSettings heat, ParticleStore& store, const ForceField& forces, const MovingColliders* bodies)
+HeatStage::HeatStage(HeatSettings heat, ParticleStore& store, const ForceField& forces, const MovingColliders& bodies)
     : heat_(std::move(heat)),
       store_(store),
       column_(store.particles().attributes.find(kTemperatureAttribute).value()),

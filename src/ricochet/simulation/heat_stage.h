@@ -20,7 +20,7 @@ namespace ricochet {
 class FrictionMeter {
 public:
     /// bodies: null if no collider moves. All must outlive the object.
-    FrictionMeter(const HeatSettings& heat, const ForceField& forces, const MovingColliders* bodies)
+    FrictionMeter(const HeatSettings& heat, const ForceField& forces, const MovingColliders& bodies)
         : heat_(heat), forces_(forces), bodies_(bodies) {}
 
     /// Appends the heat gains of particle i in the order of time. They follow from the entries of the move in
@@ -33,14 +33,14 @@ private:
 
     const HeatSettings& heat_;
     const ForceField& forces_;
-    const MovingColliders* bodies_;
+    const MovingColliders& bodies_;
 };
 
 /// Changes the temperatures of the particles that have moved.
 class HeatStage final : public Module {
 public:
     /// store: with the attribute of the temperature; must outlive it. Other arguments: see FrictionMeter.
-    HeatStage(HeatSettings heat, ParticleStore& store, const ForceField& forces, const MovingColliders* bodies);
+    HeatStage(HeatSettings heat, ParticleStore& store, const ForceField& forces, const MovingColliders& bodies);
 
     /// Returns null if surfaces do not heat particles.
     [[nodiscard]] const FrictionMeter* meter() const { return heat_.is_heated_by_surfaces() ? &meter_ : nullptr; }

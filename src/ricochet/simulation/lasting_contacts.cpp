@@ -304,7 +304,7 @@ void LastingContacts::put_to_sleep(std::span<const ContactIslandTrace* const> tr
 
 /// Needed only among moving colliders, where the verifier follows the time of every particle.
 void LastingContacts::check_sleepers(const TimeSpan& step, std::vector<BlockRecord>& blocks) const {
-    if (sleeping_islands_.empty() || are_children_ || rules().bodies == nullptr) return;
+    if (sleeping_islands_.empty() || are_children_ || rules().bodies.empty()) return;
     BlockRecord& record = blocks.emplace_back();
     for (std::size_t k = 0; k < traces_.is_asleep.size(); ++k) {
         if (is_asleep(static_cast<std::uint32_t>(k))) parts_.mover.check_sleeper(k, step, record);

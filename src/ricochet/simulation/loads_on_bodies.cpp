@@ -24,7 +24,6 @@ double product(const DrivenBody& body, const Wrench& a, const Wrench& b) {
 }  // namespace
 
 std::optional<std::size_t> LoadsOnBodies::body_of(const ColliderLoad& load) const {
-    if (colliders_ == nullptr) return std::nullopt;
     const BodyId id = colliders_->body_of(load.surface);
     const auto found = std::find(collider_of_.begin(), collider_of_.end(), id);
     if (id == kWorldBody || found == collider_of_.end()) return std::nullopt;

@@ -137,10 +137,10 @@ void add_modules(ModuleList& modules, SimulationSetup& setup, const ModuleParts&
     auto retirement = std::make_unique<Retirement>(setup.bounds, parts.population, parts.mover, parts.recorder);
     auto clouds = make_clouds(parts, *retirement, children.get());
     auto pairs = make_pairs(parts, *springs);
-    const MovingColliders* const moving = parts.scene.moving();
+    const MovingColliders& moving = parts.scene.moving();
     add(std::move(children));
     add(make_heat(setup.heat, parts));
-    add(moving != nullptr ? std::make_unique<WakingModule>(*moving, parts) : nullptr);
+    add(moving.empty() ? nullptr : std::make_unique<WakingModule>(moving, parts));
     add(std::move(clouds));
     add(std::move(springs));
     add(std::move(pairs));

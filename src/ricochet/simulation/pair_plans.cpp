@@ -150,9 +150,8 @@ void PairPlans::ask(std::vector<std::uint32_t> particles) {
 bool PairPlans::lies(std::size_t i) const {
     const Particles& particles = parts_.store.particles();
     if (particles.held[i] == 0 || !parts_.response.rules().forces.is_steady()) return false;
-    const MovingColliders* const bodies = parts_.response.rules().bodies;
     const Box3 near = ball_box(particles.position[i], (1.0 + kDisturbed) * particles.radius[i]);
-    return bodies == nullptr || bodies->all_stay_out(near);
+    return parts_.response.rules().bodies.all_stay_out(near);
 }
 
 bool PairPlans::moves(std::uint32_t k) const {
@@ -171,8 +170,7 @@ bool PairPlans::is_bounded() const {
 /// Returns true for a sphere that may go farther than its box.
 bool PairPlans::is_unbounded(std::uint32_t k) const {
     if (!is_bounded_) return true;
-    const MovingColliders* const bodies = parts_.response.rules().bodies;
-    return bodies != nullptr && !boxes_[k].empty() && !bodies->all_stay_out(boxes_[k]);
+    return !boxes_[k].empty() && !parts_.response.rules().bodies.all_stay_out(boxes_[k]);
 }
 
 /// Returns the distance, in m, that a sphere can come in a duration, in s. Walls and forces must not give it more

@@ -54,11 +54,10 @@ ContactState contact_of(const CollisionScene& scene, const Particle& particle) {
     const Vec3 position = flush_tiny(particle.position);
     if (!is_in_range(position) || particle.pinned) return {};
     if (const auto contact = contact_in(scene, scene.world(), particle, position)) return *contact;
-    if (scene.moving() == nullptr) return {};
-    const MovingColliders& moving = *scene.moving();
+    const MovingColliders& moving = scene.moving();
     const double time = std::max(0.0, particle.birth_time);
     for (const BodyId body : bodies_near(moving, position, particle.radius, time)) {
-        const Vec3 local_position = moving.pose(body, time).local_position(position);
+        const Vec3 local_position = moving.local_position(body, position, time);
         if (const auto contact = contact_in(scene, moving.world(body), particle, local_position)) return *contact;
     }
     return {};
@@ -85,7 +84,7 @@ Population::Population(ParticleStore store, const AccelerationSwitches& accelera
 }
 
 void Population::allow_sleep() {
-    const bool is_watched = parts_.scene.moving() != nullptr && parts_.options.verify;
+    const bool is_watched = !parts_.scene.moving().empty() && parts_.options.verify;
     store_.set_may_sleep(acceleration_.sleeping && parts_.response.rules().forces.is_steady() && !is_watched);
 }
 
@@ -118,9 +117,9 @@ std::vector<Population::Arrival> Population::examine(std::span<Particle* const> 
 
 Population::Arrival Population::arrival_of(Particle& particle) const {
     Arrival arrival;
-    if (parts_.scene.moving() != nullptr && is_in_range(particle.position)) {
+    if (!parts_.scene.moving().empty() && is_in_range(particle.position)) {
         const auto off =
-            off_bodies(*parts_.scene.moving(), flush_tiny(particle.position), std::max(0.0, particle.birth_time));
+            off_bodies(parts_.scene.moving(), flush_tiny(particle.position), std::max(0.0, particle.birth_time));
         if (off) particle.position = *off, arrival.starts_inside = true;
     }
     arrival.overlap = parts_.scene.overlap_of(particle);

@@ -201,15 +201,15 @@ VerifiedDeformation verified_deformation(const std::vector<Triangle>& triangles,
 }
 
 /// Returns the colliders as they collide, each in its own frame. Planes and shapes have one surface each.
-std::vector<VerifiedSurface> surfaces_of(const CollisionWorld& world, const MovingColliders* bodies) {
+std::vector<VerifiedSurface> surfaces_of(const CollisionWorld& world, const MovingColliders& bodies) {
     std::vector<VerifiedSurface> surfaces(world.colliders().size());
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
-        if (bodies != nullptr && bodies->deforming().is_mesh(i)) {
-            const DeformingColliders& deforming = bodies->deforming();
-            surfaces[i] = verified_deformation(deforming.triangles_of(i), deforming.motion_of(i));
+        if (bodies.deforming().is_mesh(i)) {
+            const DeformingMesh& mesh = bodies.deforming().mesh(i);
+            surfaces[i] = verified_deformation(mesh.triangles(), *mesh.motion());
             continue;
         }
-        const CollisionWorld& own = bodies == nullptr ? world : bodies->world(bodies->body_of_collider(i));
+        const CollisionWorld& own = bodies.world(bodies.body_of_collider(i));
         const ColliderShape& shape = own.colliders()[i].shape;
         if (const auto* ball = std::get_if<BallShape>(&shape)) {
             surfaces[i] = VerifiedShape{world_from_unit(*ball), false};
@@ -225,10 +225,10 @@ std::vector<VerifiedSurface> surfaces_of(const CollisionWorld& world, const Movi
     return surfaces;
 }
 
-VerifiedMotion motion_of(const CollisionWorld& world, const MovingColliders* bodies) {
+VerifiedMotion motion_of(const CollisionWorld& world, const MovingColliders& bodies) {
     VerifiedMotion motion;
-    if (bodies == nullptr) return motion;
-    motion.frames = bodies->frames();
+    if (bodies.empty()) return motion;
+    motion.frames = bodies.frames();
     for (const ColliderDescription& collider : world.colliders()) {
         motion.frame_of.push_back(collider.frame.empty() ? std::nullopt : motion.frames->find(collider.frame));
     }
@@ -237,7 +237,7 @@ VerifiedMotion motion_of(const CollisionWorld& world, const MovingColliders* bod
 
 }  // namespace
 
-RunCheck::RunCheck(const CollisionWorld& world, const MovingColliders* bodies)
+RunCheck::RunCheck(const CollisionWorld& world, const MovingColliders& bodies)
     : verifier_(surfaces_of(world, bodies), motion_of(world, bodies)) {}
 
 void RunCheck::add_spawned(std::size_t particles) { watched_.resize(particles); }

@@ -225,7 +225,7 @@ public:
     };
 
     /// bodies: null if no collider moves. Both must outlive it.
-    RunCheck(const CollisionWorld& world, const MovingColliders* bodies);
+    RunCheck(const CollisionWorld& world, const MovingColliders& bodies);
 
     /// Adds entries for particles that have been appended. particles: their new number. Must not be called during
     /// checks. A new particle is watched from its first check on. Only then is a driven body's path at the birth known,

@@ -30,7 +30,7 @@ bool keeps_origin(const SimulationSetup& setup) {
 
 ParticleStore make_store(const SimulationSetup& setup, const CollisionScene& scene, const Response& response) {
     const std::size_t sides = response.keeps_sides() ? scene.list().all().size() : 0;
-    return {setup.attributes, keeps_origin(setup), false, sides, scene.moving() != nullptr};
+    return {setup.attributes, keeps_origin(setup), false, sides, !scene.moving().empty()};
 }
 
 RunRecorder make_recorder(const SimulationSetup& setup, const CollisionScene& scene) {
@@ -51,9 +51,9 @@ Simulation::Impl::Impl(SimulationSetup& setup, double particle_bytes)
       scene(std::move(setup.colliders), std::move(setup.materials), setup.frames,
             chord_margin(setup.acceleration, forces)),
       queries(Simulation::queries_of(scene.shared_world())),
-      response(make_response(options.response, {scene.world(), forces, scene.materials(), options, options.duration,
-                                                setup.acceleration.look_ahead && scene.moving() == nullptr,
-                                                scene.moving(), nullptr, &control.stop()})),
+      response(make_response(options.response,
+                             {scene.world(), scene.moving(), forces, scene.materials(), options, options.duration,
+                              setup.acceleration.look_ahead && scene.moving().empty(), nullptr, &control.stop()})),
       recorder(make_recorder(setup, scene)),
       population(make_store(setup, scene, *response), setup.acceleration, particle_bytes,
                  {options, scene, *response, clock, recorder, modules}),

@@ -61,8 +61,7 @@ bool may_sleep(const ResponseRules& rules, const ContactIslandMember& member, co
 }
 
 bool is_beside_movers(const ResponseRules& rules, const Vec3& center, double radius) {
-    const MovingColliders* const bodies = rules.bodies;
-    return bodies != nullptr && !bodies->all_stay_out(ball_box(center, (1.0 + kWakingFall) * radius));
+    return !rules.bodies.all_stay_out(ball_box(center, (1.0 + kWakingFall) * radius));
 }
 
 void keep_supported(std::vector<std::uint8_t>& falls, const std::vector<std::uint8_t>& is_held,

@@ -68,7 +68,7 @@ std::optional<std::string> overlap_warning(const CollisionScene& scene, const Pa
     double deepest = 0.0;
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const double radius = particles.radius[i];
-        const auto overlap = deepest_overlap(scene.world(), scene.moving(), particles.position[i], radius, 0.0);
+        const auto overlap = deepest_overlap(scene.moving(), particles.position[i], radius, 0.0);
         if (!overlap) continue;
         const double depth = radius - overlap->distance;
         if (count++ == 0) {

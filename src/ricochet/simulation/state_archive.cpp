@@ -97,11 +97,11 @@ void archive(Archive& a, const StateParts& parts) {
 /// Returns the reason why no run can leave particle i in its restored state, or null.
 const char* fault_of(const StateParts& parts, std::size_t i) {
     const Particles& p = parts.population.particles();
-    const MovingColliders* const moving = parts.scene.moving();
+    const MovingColliders& moving = parts.scene.moving();
     for (const SurfaceId surface : p.support[i]) {
         if (surface == kNoSupport) continue;
         if (surface >= parts.scene.world().surface_count()) return "a particle on an unknown surface";
-        const bool is_moving = moving != nullptr && moving->body_of(surface) != kWorldBody;
+        const bool is_moving = moving.body_of(surface) != kWorldBody;
         if (is_moving && p.held[i] != 0) return "a particle that sleeps on a moving surface";
     }
     const bool moves = p.frozen[i] == 0;
@@ -115,7 +115,7 @@ const char* fault_of(const StateParts& parts, std::size_t i) {
     parts.modules.each([&](const Module& module) { fault = fault != nullptr ? fault : module.fault_of(i); });
     if (fault != nullptr) return fault;
     const bool is_released = p.cascade_left[i] < 0.0 && p.cascade_left[i] != ContactState::kPlaced;
-    if (is_released && moving == nullptr) return "a particle released by a body, without bodies";
+    if (is_released && moving.empty()) return "a particle released by a body, without bodies";
     return parts.population.store().is_sound(i) ? nullptr : "a particle with an impossible history";
 }
 

@@ -147,9 +147,8 @@ void ContactIsland::add_walls(std::span<const ContactIslandMember> members, Move
         walls_.clear();
         const double near = members[i].reach;
         const TimeOfStep step{state.time, state.time + members[i].duration};
-        const bool is_near = rules_.bodies == nullptr
-                                 ? find_wall_contacts(geometry, state.position, state.radius, near, walls_)
-                                 : find_wall_contacts(*rules_.bodies, step, state.position, state.radius, near, walls_);
+        const bool is_near =
+            find_wall_contacts(rules_.bodies, geometry, step, state.position, state.radius, near, walls_);
         if (!is_near) clear_.back() = kClear * near;
         for (const WallContact& wall : walls_) add_wall(i, members[i], wall);
     }
@@ -177,13 +176,13 @@ void ContactIsland::add_wall(std::uint32_t index, const ContactIslandMember& mem
 /// Adds the surface velocity of the wall's material, and sets the wall's angular velocity.
 void ContactIsland::carry(SolverContact& contact, const WallContact& wall, const Material& material,
                           const ForceInput& state) const {
-    const BodyId body = rules_.bodies == nullptr ? kWorldBody : rules_.bodies->body_of(wall.surface);
+    const BodyId body = rules_.bodies.body_of(wall.surface);
     if (!material.drives() && body == kWorldBody) return;
     const Vec3 foot = state.position - (state.radius + wall.gap) * wall.normal;
-    const MovingPose pose = body == kWorldBody ? MovingPose{} : rules_.bodies->pose(body, state.time);
+    const MovingPose pose = rules_.bodies.pose(body, state.time);
     contact.wall_turning = pose.angular_velocity;
     if (!material.drives()) return;
-    const bool is_seen_from_frame = body != kWorldBody && !rules_.bodies->is_deforming(body);
+    const bool is_seen_from_frame = rules_.bodies.has_frame(body);
     const Vec3 seen = is_seen_from_frame ? pose.local_position(foot) : foot;
     const Vec3 normal = is_seen_from_frame ? pose.local_direction(wall.normal) : wall.normal;
     contact.wall_velocity += pose.world_from_frame.direction(material.motion.at(seen, normal));

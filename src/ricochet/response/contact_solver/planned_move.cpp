@@ -43,7 +43,7 @@ private:
     void find_walls(const Vec3& center, double time, std::vector<WallContact>& found) const;
     [[nodiscard]] bool keep_off_walls(Vec3& end, double time) const;
     [[nodiscard]] Vec3 velocity_of(const ContactSurface& surface) const {
-        return rules_.bodies == nullptr ? Vec3{} : step_.impact().surfaces().velocity_of(surface);
+        return rules_.bodies.empty() ? Vec3{} : step_.impact().surfaces().velocity_of(surface);
     }
     [[nodiscard]] CollisionWorld::Nearest nearest(SurfaceId surface, const Vec3& p, double time) const;
     [[nodiscard]] Vec3 kept_off(Vec3 end, double time, std::span<const SurfaceId> surfaces) const;
@@ -67,8 +67,8 @@ MoveOutcome PlannedMove::run() {
     collect_impulses();
     particle_.spin = plan_.spin;
     particle_.state.velocity = plan_.velocity;
-    if (rules_.bodies == nullptr || catch_up(step_)) follow();
-    if (rules_.bodies != nullptr) keep_stored_position(step_);
+    if (catch_up(step_)) follow();
+    keep_stored_position(step_);
     scratch_.driven = true;
     step_.log().note_impact();
     scratch_.driven = false;
@@ -144,12 +144,8 @@ bool PlannedMove::keep_off_walls(Vec3& end, double time) const {
 void PlannedMove::find_walls(const Vec3& center, double time, std::vector<WallContact>& found) const {
     const double radius = particle_.state.radius;
     const double reach = 4.0 * contact_offset(center);
-    if (rules_.bodies == nullptr) {
-        const SurfaceGeometry geometry(rules_.world, scratch_.contacts.plane_cache);
-        static_cast<void>(find_wall_contacts(geometry, center, radius, reach, found));
-    } else {
-        static_cast<void>(find_wall_contacts(*rules_.bodies, {time, time}, center, radius, reach, found));
-    }
+    const SurfaceGeometry geometry(rules_.world, scratch_.contacts.plane_cache);
+    static_cast<void>(find_wall_contacts(rules_.bodies, geometry, {time, time}, center, radius, reach, found));
 }
 
 /// Records the planned effects of walls at the start of the step.
@@ -162,16 +158,14 @@ void PlannedMove::collect_impulses() {
 
 /// Adds a moving surface to held_. Lines along a surface at rest stay clear of it anyway.
 void PlannedMove::hold(SurfaceId surface) {
-    if (rules_.bodies == nullptr || rules_.bodies->body_of(surface) == kWorldBody) return;
+    if (rules_.bodies.body_of(surface) == kWorldBody) return;
     const auto at = std::lower_bound(held_.begin(), held_.end(), surface);
     if (at == held_.end() || *at != surface) held_.insert(at, surface);
 }
 
 /// Returns the point nearest to p of a surface at a time, in s.
 CollisionWorld::Nearest PlannedMove::nearest(SurfaceId surface, const Vec3& p, double time) const {
-    const bool is_at_rest = rules_.bodies == nullptr || rules_.bodies->body_of(surface) == kWorldBody;
-    if (!is_at_rest) return nearest_at(*rules_.bodies, surface, p, time);
-    return SurfaceGeometry(rules_.world, scratch_.contacts.plane_cache).nearest(surface, p);
+    return SurfacesInTime(rules_.bodies, kWorldBody, time).nearest(surface, {p, 0.0, p});
 }
 
 /// Moves a position off the given surfaces if it is too near to them at a time, in s. Also moves it off walls that it

@@ -1,10 +1,9 @@
 #include "ricochet/response/contact_solver/wall_contacts.h"
 
 #include <algorithm>
-#include <array>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/sweep/closest_point.h"
 #include "ricochet/geometry/sweep/point_sweep.h"
 
 namespace ricochet {
@@ -85,30 +84,30 @@ void find_on_body(const MovingColliders& bodies, BodyId body, const TimeOfStep& 
 bool find_on_deforming(const DeformingColliders& deforming, const TimeOfStep& step, const Vec3& center, double radius,
                        double reach, std::vector<WallContact>& found) {
     const double within = radius + reach;
-    const Vec3 by{within, within, within};
     std::vector<SurfaceId> surfaces;
-    deforming.near({center - by, center + by}, surfaces);
+    deforming.near(ball_box(center, within), surfaces);
     std::vector<Near> near;
     double offset = 0.0;
     for (const SurfaceId surface : surfaces) {
-        const CollisionWorld::Nearest nearest = deforming.nearest(surface, center, step.begin);
+        const CollisionWorld::Nearest nearest = deforming.triangle_at(surface, step.begin).nearest(center);
         if (nearest.distance > within) continue;
         near.push_back({surface, nearest});
-        offset = std::max(offset, deforming.offset_of(surface));
+        offset = std::max(offset, deforming.mesh_with(surface).offset());
     }
     const std::size_t first = found.size();
     const double same = kSameDirection * radius + 2.0 * offset;
     keep_smallest(
         near, center, radius, same,
-        [&](SurfaceId surface, const Vec3& p) { return deforming.nearest(surface, p, step.begin).distance; }, found);
+        [&](SurfaceId surface, const Vec3& p) {
+            return deforming.triangle_at(surface, step.begin).nearest(p).distance;
+        },
+        found);
     for (std::size_t k = first; k < found.size() && step.end > step.begin; ++k) {
         WallContact& contact = found[k];
-        const auto [a, b, c] = deforming.corners_at(contact.surface, step.begin);
         const Vec3 foot = center - (radius + contact.gap) * contact.normal;
-        const Vec3 weights = barycentric_coordinates(closest_point_on_triangle(foot, a, b, c), a, b, c);
-        const std::array<Vec3, 3> later = deforming.corners_at(contact.surface, step.end);
-        const Vec3 displacement = weights.x * (later[0] - a) + weights.y * (later[1] - b) + weights.z * (later[2] - c);
-        contact.carried = displacement / (step.end - step.begin);
+        const DeformedTriangle later = deforming.triangle_at(contact.surface, step.end);
+        contact.carried =
+            deforming.triangle_at(contact.surface, step.begin).displacement_of(foot, later) / (step.end - step.begin);
     }
     return !surfaces.empty();
 }
@@ -130,31 +129,18 @@ bool find_wall_contacts(const SurfaceGeometry& geometry, const Vec3& center, dou
     return !near.empty();
 }
 
-bool find_wall_contacts(const MovingColliders& bodies, const TimeOfStep& step, const Vec3& center, double radius,
-                        double reach, std::vector<WallContact>& found) {
-    const double within = radius + reach;
-    const Vec3 by{within, within, within};
+bool find_wall_contacts(const MovingColliders& bodies, const SurfaceGeometry& at_rest, const TimeOfStep& step,
+                        const Vec3& center, double radius, double reach, std::vector<WallContact>& found) {
     std::vector<BodyId> near;
-    bodies.near({center - by, center + by}, kWorldBody, near);
+    bodies.near(ball_box(center, radius + reach), kWorldBody, near);
     for (const BodyId body : near) {
         if (!bodies.is_deforming(body)) find_on_body(bodies, body, step, center, radius, reach, found);
     }
-    TrianglePlaneCache planes;
-    bool is_near = find_wall_contacts(SurfaceGeometry(bodies.world(kWorldBody), planes), center, radius, reach, found);
+    bool is_near = find_wall_contacts(at_rest, center, radius, reach, found);
     if (!bodies.deforming().empty()) {
         is_near = find_on_deforming(bodies.deforming(), step, center, radius, reach, found) || is_near;
     }
     return is_near || !near.empty();
-}
-
-CollisionWorld::Nearest nearest_at(const MovingColliders& bodies, SurfaceId surface, const Vec3& p, double time) {
-    const BodyId body = bodies.body_of(surface);
-    if (bodies.is_deforming(body)) return bodies.deforming().nearest(surface, p, time);
-    if (body == kWorldBody) return bodies.world(kWorldBody).nearest(surface, p);
-    const MovingPose pose = bodies.pose(body, time);
-    CollisionWorld::Nearest nearest = bodies.world(body).nearest(surface, pose.local_position(p));
-    nearest.normal = pose.world_from_frame.direction(nearest.normal);
-    return nearest;
 }
 
 }  // namespace ricochet

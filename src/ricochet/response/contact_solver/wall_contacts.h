@@ -33,11 +33,7 @@ bool find_wall_contacts(const SurfaceGeometry& geometry, const Vec3& center, dou
 /// the start of the step. Normals of rigid colliders are those in the middle of the step, because the mean velocity of
 /// a point on a rotating surface is tangential there. Normals at the start of the step would give a rotating drum a
 /// normal velocity. Returns true if any surface may come within reach in the step.
-bool find_wall_contacts(const MovingColliders& bodies, const TimeOfStep& step, const Vec3& center, double radius,
-                        double reach, std::vector<WallContact>& found);
-
-/// Returns the distance of a position from a surface at a time, in s, and the unit normal towards the position.
-[[nodiscard]] CollisionWorld::Nearest nearest_at(const MovingColliders& bodies, SurfaceId surface, const Vec3& p,
-                                                 double time);
+bool find_wall_contacts(const MovingColliders& bodies, const SurfaceGeometry& at_rest, const TimeOfStep& step,
+                        const Vec3& center, double radius, double reach, std::vector<WallContact>& found);
 
 }  // namespace ricochet

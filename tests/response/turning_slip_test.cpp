@@ -137,6 +137,33 @@ TEST(TurningSlip, LeavesOtherMotionsToOtherPlans) {
     EXPECT_EQ(slip_on_slope(rolling, 0.3, 0.15).longest(0.1), 0.0) << "it rolls";
 }
 
+// Friction that almost balances the slope changes the slip slowly, but turns it to its steady direction fast.
+TEST(TurningSlip, FrictionNearBalanceEndsTheIntervalBeforeTheMethodIsUnstable) {
+    const double friction = 0.999 * std::tan(kAngle);
+    const Vec3 start = 1e-3 * kDownhill + 1e-5 * kSideways;
+    const double lasts = slip_on_slope({start, {}}, 0.0, friction).longest(0.1);
+    EXPECT_LT(lasts * friction * kG * std::cos(kAngle), 5.01e-3);
+    Vec3 velocity = start;
+    for (int k = 0; k < 20; ++k) {
+        const TurningSlip slip = slip_on_slope({velocity, {}}, 0.0, friction);
+        const double time = slip.longest(0.1);
+        if (time == 0.0) break;
+        velocity = slip.at(time).velocity;
+        EXPECT_LE(std::fabs(dot(velocity, kNormal)), 1e-17);
+        EXPECT_GE(dot(velocity, kSideways), 0.0);
+    }
+    EXPECT_LT(dot(velocity, kSideways), 1e-6);
+}
+
+// The rounding of a slow slip across the surface once pushed spheres into it.
+TEST(TurningSlip, SlowSlipOfAFastSphereStaysOnTheSurface) {
+    const Motion rolling{2.0 * kSideways, cross(kNormal, 2.0 * kSideways) / 0.3 + Vec3{3e-6, 1e-6, -2e-6}};
+    const TurningSlip slip = slip_on_slope(rolling, 0.3, 0.15);
+    const TurningSlip::State end = slip.at(1e-8);
+    EXPECT_LE(std::fabs(dot(end.acceleration, kNormal)), 1e-14);
+    EXPECT_LE(std::fabs(dot(end.friction, kNormal)), 1e-15);
+}
+
 TEST(TurningSlip, SurfacePressesAndBrakes) {
     const TurningSlip slip = slip_on_slope({2.0 * kSideways, {}}, 0.0, 0.15);
     const double pressing = kG * std::cos(kAngle);

@@ -14,6 +14,10 @@ constexpr double kSphereSlipRate = 3.5;
 /// right angle in ten intervals, one takes 2e-5. Local: its cost is small next to that of the interval's query.
 constexpr int kParts = 2;
 
+/// Rate at which friction turns the slip back to its steady direction, per step of the method, up to which the method
+/// is stable (its limit is 2.78). Local: a bound of its stages.
+constexpr double kStageLimit = 2.5;
+
 }  // namespace
 
 TurningSlip::TurningSlip(const Motion& motion, double radius, const SupportSurface& surface, const Vec3& forces,
@@ -27,7 +31,11 @@ TurningSlip::TurningSlip(const Motion& motion, double radius, const SupportSurfa
       slip_rate_(radius > 0.0 ? kSphereSlipRate : 1.0),
       rounding_(kSlowSlip * speed_scale(motion, radius, {&surface, 1})) {
     along_ = forces + pressing_ * normal_;
-    along_ -= dot(along_, normal_) * normal_;
+    // Along the surface to the rounding of their own size: friction has the direction of the slip, however slow that
+    // is.
+    for (Vec3* const v : {&along_, &slip_}) {
+        for (int pass = 0; pass < 2; ++pass) *v -= dot(*v, normal_) * normal_;
+    }
 }
 
 double TurningSlip::longest(double duration) const {
@@ -38,9 +46,11 @@ double TurningSlip::longest(double duration) const {
     const double braking = -dot(change, heading);
     const double turning = length(change + braking * heading);
     if (!(turning * duration > kStraightHeading * speed)) return 0.0;
-    if (turning * duration <= kMostStraightTurn * speed) return 2.0 * braking * duration < speed ? duration : 0.0;
-    const double rate = length(change);
-    return rate * duration > kMaxArcAngle * speed ? kMaxArcAngle * speed / rate : duration;
+    const double stable = kParts * kStageLimit * speed / (slip_rate_ * friction_);
+    if (turning * duration <= kMostStraightTurn * speed) {
+        return 2.0 * braking * duration < speed && duration <= stable ? duration : 0.0;
+    }
+    return std::min({duration, stable, kMaxArcAngle * speed / length(change)});
 }
 
 Vec3 TurningSlip::friction_on(const Vec3& slip) const { return (-friction_ / length(slip)) * slip; }

@@ -25,9 +25,9 @@ public:
     TurningSlip(const Motion& motion, double radius, const SupportSurface& surface, const Vec3& forces,
                 double pressure);
 
-    /// Returns the time, in s, at most `duration`, in which the slip changes by at most kMaxArcAngle of its size, or
-    /// hardly turns. Returns 0 if the motion needs another description: no friction acts, the slip does not turn, it
-    /// soon ends without a turn, or it is only rounding.
+    /// Returns the time, in s, at most `duration`, in which the method is stable, and the slip changes by at most
+    /// kMaxArcAngle of its size or hardly turns. Returns 0 if the motion needs another description: no friction acts,
+    /// the slip does not turn, it soon ends without a turn, or it is only rounding.
     [[nodiscard]] double longest(double duration) const;
     /// Returns the state after t, in s.
     [[nodiscard]] State at(double t) const;

@@ -132,10 +132,6 @@ double NarrowPhase::test_sphere(std::uint32_t triangle) {
     return 0.0;
 }
 
-bool NarrowPhase::is_support(SurfaceId surface) const {
-    return std::find(supports_.begin(), supports_.end(), surface) != supports_.end();
-}
-
 void NarrowPhase::add_hit(const Hit& hit) {
     if (is_support(hit.surface)) return;
     scratch_.hits.push_back(hit);

@@ -2,6 +2,7 @@
 /// The narrow phase tests one path exactly against planes, shapes and triangles, one after the other.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -56,7 +57,9 @@ public:
 private:
     void test_point(std::uint32_t triangle);
     double test_sphere(std::uint32_t triangle);
-    [[nodiscard]] bool is_support(SurfaceId surface) const;
+    [[nodiscard]] bool is_support(SurfaceId surface) const {
+        return !supports_.empty() && std::find(supports_.begin(), supports_.end(), surface) != supports_.end();
+    }
     void add_hit(const ContactScratch::Hit& hit);
     void add_overlap(SurfaceId surface, double distance);
 

@@ -85,11 +85,14 @@ class Comparison:
             with tempfile.TemporaryDirectory() as work:
                 folder = Path(work) / "run"
                 said = [run(program, scene, folder, [*extra, *planted], self.limit) for extra in (options, *more)]
-                if said[0][0] == -1:
+                if any(code == -1 for code, _ in said):
                     return "skipped: the time limit ended the run"
                 found.append((said, contents(folder) if folder.exists() else {}))
         if found[0][0] != found[1][0]:
             return f"exit codes or messages differ: {found[0][0]} and {found[1][0]}"
+        code, message = found[0][0][0]
+        if code == 2:  # bad input, such as a mesh that does not exist here
+            return f"skipped: both programs refuse the scene: {message.strip()}"
         return difference(found[0][1], found[1][1])
 
     def of_scene(self, name: str, scene: Path, duration: str) -> List[str]:

@@ -11,13 +11,6 @@
 namespace ricochet {
 namespace {
 
-/// Rate of decay, per step, up to which the Runge-Kutta method is used. Local: a bound of stability of its stages,
-/// which is 2.78.
-constexpr double kStageLimit = 2.5;
-
-/// Change of a sphere's slip by friction, over the acceleration of its centre. A mathematical constant.
-constexpr double kSlipAcceleration = 3.5;
-
 /// Largest number of consecutive plans that end at once. Then the last one counts. Local, because the next interval
 /// starts from its end.
 constexpr int kMostPlans = 4;

@@ -12,6 +12,13 @@
 
 namespace ricochet {
 
+/// Rate of decay, per step, up to which the Runge-Kutta method is used. Local: a bound of stability of its stages,
+/// which is 2.78.
+inline constexpr double kStageLimit = 2.5;
+
+/// Change of a sphere's slip by friction, over the acceleration of its centre. A mathematical constant.
+inline constexpr double kSlipAcceleration = 3.5;
+
 /// One interval of contact with constant acceleration along the surfaces.
 struct ContactInterval {
     Motion motion;           ///< at the start, along the surfaces

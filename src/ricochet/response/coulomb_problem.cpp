@@ -25,10 +25,10 @@ constexpr std::size_t kShortStarts = 3;
 /// search.
 constexpr std::array kOthersAt{kStiffCompliance, 1e-8, 1e-6};
 constexpr std::array kSweepsToOther{30, 300};
-/// Compliances at which a short search begins, and sweeps before its second attempt. Reason: of 1600 problems of a ball
-/// that rolls over concave edges this solves all, and the way from soft contacts half. Of random problems that both
-/// solve, one in eighty has several answers and gets another one. Local: starts of this search, whose result is
-/// checked.
+/// Compliances at which a short search begins, and sweeps before its second attempt. Reason: this solves all but one of
+/// 1600 problems of a ball that rolls over concave edges, and the way from soft contacts solves half. One in eighty of
+/// the random problems that both solve has several answers and gets another one. Local: starts of this search, whose
+/// result is checked.
 constexpr std::array kStiffAtOnce{1e-6, kStiffCompliance};
 constexpr int kSweepsAtOnce = 3;
 /// Local: the fastest stiffening of a short search; parts of the friction, and sweeps for each. kCoulombResidual

@@ -3,20 +3,14 @@
 #include <algorithm>
 
 #include "ricochet/core/tolerances.h"
+#include "ricochet/response/contact_interval.h"
 
 namespace ricochet {
 namespace {
 
-/// Change of a sphere's slip by friction, over the acceleration of its centre. A mathematical constant.
-constexpr double kSphereSlipRate = 3.5;
-
 /// Steps of the Runge-Kutta method in an interval. Reason: two take 1e-6 from the speed of a slide that turns by a
 /// right angle in ten intervals, one takes 2e-5. Local: its cost is small next to that of the interval's query.
 constexpr int kParts = 2;
-
-/// Rate at which friction turns the slip back to its steady direction, per step of the method, up to which the method
-/// is stable (its limit is 2.78). Local: a bound of its stages.
-constexpr double kStageLimit = 2.5;
 
 }  // namespace
 
@@ -28,7 +22,7 @@ TurningSlip::TurningSlip(const Motion& motion, double radius, const SupportSurfa
       pressing_(std::max(0.0, -dot(forces, normal_))),
       friction_(pressure * surface.friction * pressing_),
       slip_(slip_on(surface, motion, radius)),
-      slip_rate_(radius > 0.0 ? kSphereSlipRate : 1.0),
+      slip_rate_(radius > 0.0 ? kSlipAcceleration : 1.0),
       rounding_(kSlowSlip * speed_scale(motion, radius, {&surface, 1})) {
     along_ = forces + pressing_ * normal_;
     // Along the surface to the rounding of their own size: friction has the direction of the slip, however slow that
@@ -46,6 +40,7 @@ double TurningSlip::longest(double duration) const {
     const double braking = -dot(change, heading);
     const double turning = length(change + braking * heading);
     if (!(turning * duration > kStraightHeading * speed)) return 0.0;
+    // Friction turns the slip back to its steady direction at the rate slip_rate_ * friction_ / speed.
     const double stable = kParts * kStageLimit * speed / (slip_rate_ * friction_);
     if (turning * duration <= kMostStraightTurn * speed) {
         return 2.0 * braking * duration < speed && duration <= stable ? duration : 0.0;

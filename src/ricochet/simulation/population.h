@@ -63,7 +63,7 @@ public:
     [[nodiscard]] FreeFlights& flights() { return flights_; }
     /// Wakes a particle, from the next step on.
     void wake(std::size_t i);
-    /// Forgets what is known about queries, which affects only speed.
+    /// Forgets the results of earlier queries. Only speed depends on them.
     void forget_queries();
     /// Decides whether held particles may sleep. Must be called when the forces have changed.
     void allow_sleep();

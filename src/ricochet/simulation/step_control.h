@@ -1,6 +1,6 @@
 /// \file
-/// Private to the simulation: the phases of a run, steps that their caller can stop, the state to which such a step
-/// goes back, and the user's function that receives the contact records of each step.
+/// Private to the simulation: the phases of a run, and steps that their caller can stop. The file also has the state to
+/// which a stopped step goes back, and the report of contact records to the user's function.
 #pragma once
 
 #include <chrono>

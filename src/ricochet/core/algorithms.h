@@ -9,9 +9,9 @@
 
 namespace ricochet {
 
-/// Calls visit(i), in ascending order, for every i in [begin, end) with predicate(i). The predicate must not have side
-/// effects. Fast if matches are rare and the predicate compiles to vector instructions: blocks of 16 without a match
-/// are skipped at once.
+/// Calls visit(i), in ascending order, for every i in [begin, end) for which predicate(i) is true. The predicate must
+/// not have side effects. Fast if matches are rare and the predicate compiles to vector instructions: blocks of 16
+/// without a match are skipped at once.
 template <class Predicate, class Visit>
 void for_each_if(std::size_t begin, std::size_t end, const Predicate& predicate, const Visit& visit) {
     constexpr std::size_t kBlock = 16;
@@ -28,8 +28,9 @@ void for_each_if(std::size_t begin, std::size_t end, const Predicate& predicate,
     }
 }
 
-/// Reserves capacity for `more` entries at the end of a list: exactly for a large batch, geometrically for small ones.
-/// Many small appends then do not reallocate each time, and a large one does not keep millions of entries twice.
+/// Reserves capacity for `more` further entries of a list. The capacity grows by at least half, so that many small
+/// appends rarely reallocate. A larger request gets exactly its size, so that no memory for millions of unused entries
+/// is reserved.
 template <class T>
 void grow_capacity_by(std::vector<T>& list, std::size_t more) {
     const std::size_t wanted = list.size() + more;

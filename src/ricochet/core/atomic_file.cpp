@@ -53,7 +53,7 @@ void AtomicFile::write(std::string_view bytes) {
 
 void AtomicFile::commit() {
     if (std::fflush(file_) != 0) fail(target_, "write");
-    // Checked before the rename, because some file systems report a failed write only when the file is closed.
+    // The file is closed before the rename, because some file systems report a failed write only when a file is closed.
     if (std::fclose(std::exchange(file_, nullptr)) != 0) fail(target_, "close");
     if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail(target_, "name");
     is_committed_ = true;

@@ -10,12 +10,12 @@
 
 namespace ricochet {
 
-/// Writer that uses a temporary name beside the target and renames the file in commit(). Without commit() the temporary
-/// file is removed and an older file of that name is unchanged. This also holds if a signal ends the process
-/// (core/unfinished_file.h). For one thread at a time.
+/// Writer that uses a temporary name beside the target and renames the file in commit(). If commit() is not called, the
+/// destructor removes the temporary file, and an existing target file stays unchanged. A signal that ends the process
+/// has the same effect (core/unfinished_file.h). An object must be used by one thread at a time.
 class AtomicFile {
 public:
-    /// Throws InputError if the target is a folder or a device, and RunError if it cannot be created.
+    /// Throws InputError if the target is a folder or a device, and RunError if the file cannot be created.
     explicit AtomicFile(std::filesystem::path target);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
@@ -23,7 +23,7 @@ public:
 
     /// Appends bytes. Throws RunError if they cannot be written.
     void write(std::string_view bytes);
-    /// Closes the file and gives it its name. Throws RunError if that fails. Call it once, at the end.
+    /// Closes the file and renames it to the target. Throws RunError if that fails. Call commit() once, at the end.
     void commit();
 
 private:

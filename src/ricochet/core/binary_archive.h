@@ -18,7 +18,7 @@
 
 namespace ricochet {
 
-/// True for types that are saved with their bytes in memory: types without pointers and padding.
+/// True for types that are saved as a copy of their bytes in memory: types without pointers and padding.
 template <class T>
 inline constexpr bool kIsFlat = std::is_arithmetic_v<T> || std::is_enum_v<T>;  // std::byte is an enumeration
 template <>
@@ -26,8 +26,8 @@ inline constexpr bool kIsFlat<Vec3> = true;
 template <class T, std::size_t n>
 inline constexpr bool kIsFlat<std::array<T, n>> = kIsFlat<T>;
 
-/// Archive that writes. A type has one function template for both archives: archive(x.member) for every member saves or
-/// restores it.
+/// Archive that writes values as bytes. A type has one function template for writing and reading, which calls
+/// archive(x.member) for every member. Each call saves or restores that member.
 class BinaryWriter {
 public:
     static constexpr bool kReads = false;
@@ -43,14 +43,15 @@ public:
         (*this)(static_cast<std::uint64_t>(values.size()));
         if (!values.empty()) sink_(std::as_bytes(std::span(values)));
     }
-    /// Writes a list that belongs to another list of `size` entries.
+    /// Writes a list that must have `size` entries, because it belongs to another list. Only the reader checks the
+    /// length.
     template <class T>
     requires kIsFlat<T>
     void operator()(const std::vector<T>& values, std::size_t size) {
         static_cast<void>(size);
         (*this)(values);
     }
-    /// Writes such a list, which may be empty: then all entries have the value `absent`.
+    /// Writes a list that has `size` entries or none. An empty list stands for `size` entries of the value `absent`.
     template <class T>
     void all_or_none(const std::vector<T>& values, std::size_t size, const T& absent) {
         static_cast<void>(absent);
@@ -93,7 +94,7 @@ public:
         if (found != size) throw InputError("saved lists that belong together have different lengths");
         fill(values, found);
     }
-    /// Reads such a list, which may also be empty.
+    /// Reads a list that has `size` entries or none. Throws InputError for other lengths.
     template <class T>
     requires kIsFlat<T>
     void all_or_none(std::vector<T>& values, std::size_t size, const T& absent) {
@@ -105,7 +106,7 @@ public:
     void operator()(std::string& text) { fill(text, length()); }
 
 private:
-    /// Number of bytes by which lists grow.
+    /// Number of bytes by which a list grows at a time while it is read.
     static constexpr std::size_t kPiece = std::size_t{1} << 20;
 
     [[nodiscard]] std::uint64_t length() {
@@ -127,7 +128,7 @@ private:
     ByteSource source_;
 };
 
-/// Any length is accepted, in archive_entries().
+/// Expected length in archive_entries() with which every length is accepted.
 inline constexpr std::uint64_t kAnyLength = ~std::uint64_t{0};
 
 /// Saves or restores a list whose entries are not flat, by calling visit(entry) for each. Throws InputError when

@@ -4,14 +4,14 @@
 
 namespace ricochet {
 
-/// An interval at whose lower end a condition holds and at whose upper end it does not.
+/// Interval with a condition that is true at the lower end and false at the upper end.
 struct Bracket {
     double low = 0.0;
     double high = 0.0;
 };
 
 /// Halves an interval until it is empty, at most `halvings` times. holds(x): a condition that is true at `low` and
-/// false at `high`. If it changes more than once between them, one of its changes is found.
+/// false at `high`. If the condition changes several times in the interval, the result encloses one of the changes.
 template <class Condition>
 [[nodiscard]] Bracket bisect(double low, double high, int halvings, const Condition& holds) {
     for (int k = 0; k < halvings && low < high; ++k) {

@@ -42,7 +42,7 @@ MovingPose BodyPath::at(double time) const {
     const Cubic<Vec3> moved(center_path, t);
     const Cubic<double> turned(turns, t);
     MovingPose pose = turned_by(degrees + turned.value, turned.rate, turned.second);
-    // The carrier follows its path, and the origin of the frame moves around it.
+    // The carrier point follows its cubic, and the frame's origin rotates about this point.
     const Vec3 arm = pose.world_from_frame.direction(carrier);
     const Vec3 arm_at_begin = turned_by(degrees).world_from_frame.direction(carrier);
     const Vec3 carried = cross(pose.angular_velocity, arm);

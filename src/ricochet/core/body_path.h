@@ -1,6 +1,6 @@
 /// \file
-/// Motion of a rigid body during a substep: one point of it follows a cubic, and the body turns about an axis that
-/// keeps its direction.
+/// Motion of a rigid body during a substep. One point of the body follows a cubic, and the body rotates about an axis
+/// of constant direction.
 #pragma once
 
 #include <array>
@@ -10,14 +10,15 @@
 
 namespace ricochet {
 
-/// Pose of a body's frame as a function of time, from `begin` to `end`, in s. The pose at `begin` equals the members
-/// bit by bit, so a path that continues an earlier one leaves no gap.
+/// Pose of a body's frame as a function of time, from `begin` to `end`, in s. At `begin`, the pose has exactly the
+/// position and the angle in the members, to the last bit. A path that continues an earlier one therefore starts
+/// without a gap.
 struct BodyPath {
     double begin = 0.0;
     double end = 0.0;
     AffineMap at_begin;                 ///< position of the origin at the start, in m, and the rotation at angle 0
     Vec3 carrier;                       ///< the point that follows the cubic, in m, in the frame's coordinates
-    std::array<Vec3, 3> center_path{};  ///< its path in the world: coefficients of t, t^2 and t^3, in m/s^n
+    std::array<Vec3, 3> center_path{};  ///< the carrier's path in the world: coefficients of t, t^2 and t^3, in m/s^n
     Vec3 axis{0, 0, 1};                 ///< unit vector; the same in the frame's axes and in world axes
     std::array<double, 3> turns{};      ///< the angle in degrees: coefficients of t, t^2 and t^3
     double degrees = 0.0;               ///< angle at the start
@@ -27,7 +28,7 @@ struct BodyPath {
     /// Returns bounds of the motion over [from, to], in s.
     [[nodiscard]] MotionBounds bounds(double from, double to) const;
 
-    /// Saves or restores the path. a: an archive, which takes members one by one.
+    /// Saves or restores the path. a: an archive, which is called with each member.
     template <class Archive>
     void archive(Archive& a) {
         a(begin), a(end), a(carrier), a(axis), a(degrees);

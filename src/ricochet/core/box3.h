@@ -1,5 +1,5 @@
 /// \file
-/// Axis-aligned box, and Morton codes of the points in one.
+/// Axis-aligned box, and Morton codes of points in a box.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,7 @@ struct Box3 {
     [[nodiscard]] double diagonal() const { return empty() ? 0.0 : length(size()); }
 };
 
-/// Returns the lowest 21 bits of x, with two zero bits between neighbours.
+/// Returns the lowest 21 bits of x, with two zero bits between neighbouring bits.
 [[nodiscard]] constexpr std::uint64_t spread_bits(std::uint64_t x) {
     x = (x | x << 32U) & 0x001F00000000FFFFULL;
     x = (x | x << 16U) & 0x001F0000FF0000FFULL;
@@ -45,7 +45,8 @@ struct Box3 {
 }
 
 /// Returns the position of a point along the Z-order curve through 2^21 cells per axis of the box, in 63 bits. Points
-/// with close codes are close to each other. Points outside belong to the nearest cell, NaN points to any cell.
+/// with close codes are close to each other. Points outside the box belong to the nearest cell. A NaN coordinate counts
+/// as cell 0 of its axis.
 /// Source: G. M. Morton, "A Computer Oriented Geodetic Data Base", IBM, 1966.
 [[nodiscard]] inline std::uint64_t morton_code(const Vec3& p, const Box3& box) {
     constexpr double kCells = 1 << 21;
@@ -57,7 +58,7 @@ struct Box3 {
     return spread_bits(cell(0)) | spread_bits(cell(1)) << 1U | spread_bits(cell(2)) << 2U;
 }
 
-/// Returns a sort key: the leading bits of the code, then an index below 2^index_bits.
+/// Returns a sort key: the leading bits of the Morton code, then an index below 2^index_bits.
 [[nodiscard]] inline std::uint64_t morton_key(const Vec3& p, const Box3& box, std::uint32_t index,
                                               unsigned index_bits) {
     return morton_code(p, box) << 1U >> index_bits << index_bits | index;

@@ -6,7 +6,7 @@
 
 namespace ricochet {
 
-/// Returns the box, larger by a margin (in m) on every side.
+/// Returns a box that is larger by a margin, in m, on every side.
 [[nodiscard]] inline Box3 grown(const Box3& box, double margin) {
     const Vec3 by{margin, margin, margin};
     return {box.lower - by, box.upper + by};
@@ -15,8 +15,8 @@ namespace ricochet {
 /// Returns the box around a ball.
 [[nodiscard]] inline Box3 ball_box(const Vec3& center, double radius) { return grown({center, center}, radius); }
 
-/// Returns true if the boxes have a point in common. Without branches, because it is random which comparison fails
-/// first.
+/// Returns true if the boxes have a point in common. Uses no branches, because the processor cannot predict which
+/// comparison fails first.
 [[nodiscard]] inline bool overlap(const Box3& a, const Box3& b) {
     return static_cast<bool>(
         static_cast<unsigned>(a.lower.x <= b.upper.x) & static_cast<unsigned>(b.lower.x <= a.upper.x) &

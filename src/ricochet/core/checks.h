@@ -1,5 +1,5 @@
 /// \file
-/// Checks of arguments of forces, flows and frames. Each check throws InputError with one line.
+/// Checks of arguments of forces, flows and frames. Each check throws InputError with a message of one line.
 #pragma once
 
 #include <string_view>
@@ -8,8 +8,9 @@
 
 namespace ricochet::detail {
 
-/// Throw InputError unless the value is finite (positive, not negative). what: for example `drag: the coefficient`.
-/// unit: empty for pure numbers.
+/// Throw InputError unless the value is finite. require_positive() also requires a value above 0, and
+/// require_not_negative() one of at least 0. what: name of the value in the message, for example `drag: the
+/// coefficient`. unit: empty for pure numbers.
 void require_finite(const Vec3& value, std::string_view what, std::string_view unit);
 void require_finite(double value, std::string_view what, std::string_view unit);
 void require_positive(double value, std::string_view what, std::string_view unit);

@@ -17,7 +17,7 @@ public:
     DisjointSets() = default;
     explicit DisjointSets(std::size_t count) { reset(count); }
 
-    /// Makes each number a set of its own. Keeps the memory.
+    /// Makes each number a set of its own. Keeps the allocated memory.
     void reset(std::size_t count) {
         parent_.resize(count);
         std::iota(parent_.begin(), parent_.end(), 0U);
@@ -29,7 +29,7 @@ public:
         return i;
     }
 
-    /// Joins the sets of two numbers. Returns false if they were in one set already.
+    /// Joins the sets of two numbers. Returns false if both are already in one set.
     bool join(std::uint32_t a, std::uint32_t b) {
         a = find(a);
         b = find(b);
@@ -44,7 +44,7 @@ public:
         for (std::uint32_t i = 0; i < parent_.size(); ++i) sets += parent_[i] == i ? 1 : 0;
         return sets;
     }
-    /// Returns the number of numbers.
+    /// Returns the number of elements of all sets together.
     [[nodiscard]] std::size_t size() const { return parent_.size(); }
 
 private:

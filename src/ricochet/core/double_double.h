@@ -7,9 +7,9 @@
 /// Double-Word Arithmetic", ACM TOMS 44(2), 2017 (sum, product, quotient and the bounds given here); V. Lefevre et al.,
 /// "Accurate Calculation of Euclidean Norms Using Double-Word Arithmetic", ACM TOMS 49(1), 2023 (root).
 ///
-/// Everything assumes rounding to nearest even, no flush-to-zero, and that no intermediate result overflows or
-/// underflows. Bounds are relative errors in terms of u = 2^-53. The bits do not depend on whether the processor has a
-/// fused multiply-add, because it is used only for the (exact) error of a product.
+/// All functions assume rounding to nearest even without flush-to-zero. They also assume that no intermediate result
+/// overflows or underflows. Bounds are relative errors in terms of u = 2^-53. Results have the same bits with and
+/// without a fused multiply-add, because that instruction computes only the exact error of a product.
 #pragma once
 
 #include <cmath>
@@ -33,7 +33,7 @@ struct DoubleDouble {
     constexpr explicit operator double() const { return hi; }
 
     friend constexpr bool operator==(const DoubleDouble&, const DoubleDouble&) = default;
-    /// Compares the represented numbers. The order is lexicographic, since both are normalised.
+    /// Compares the represented numbers. For normalised numbers this is the lexicographic order of the parts.
     friend constexpr std::partial_ordering operator<=>(const DoubleDouble&, const DoubleDouble&) = default;
 };
 
@@ -54,7 +54,7 @@ struct DoubleDouble {
 /// Returns a - b exactly, as rounded difference and rounding error.
 [[nodiscard]] constexpr DoubleDouble two_diff(double a, double b) { return two_sum(a, -b); }
 
-/// Returns a as the sum of two numbers of at most 26 significant bits each (Veltkamp). |a| must be below 2^996.
+/// Returns a as the exact sum of two numbers of at most 26 significant bits each (Veltkamp). |a| must be below 2^996.
 [[nodiscard]] constexpr DoubleDouble split(double a) {
     // A mathematical constant.
     constexpr double kSplitter = 0x1p27 + 1.0;

@@ -22,7 +22,8 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// Divergence of a run, for example by a step too long for its forces. The text says when and where it happened.
+/// Divergence of a run, for example because its time step is too long for its forces. The text says when and where the
+/// run diverged.
 class DivergedError : public RunError {
 public:
     using RunError::RunError;

@@ -17,16 +17,16 @@
 namespace ricochet {
 namespace {
 
-/// Largest number of entries of a chain. Longer chains of frames continue the chain of another frame, so that deep
-/// trees take memory in proportion to their number of frames.
+/// Largest number of frames in one stored chain. A longer chain starts at an ancestor that stores the rest of the
+/// chain. The memory of deep trees is thus proportional to their number of frames.
 constexpr std::size_t kLongestChain = 16;
 
-/// Number of the world as a parent.
+/// Frame number that stands for the world in lists of parents.
 constexpr std::size_t kWorld = std::numeric_limits<std::size_t>::max();
 
 using Chains = std::vector<std::vector<std::size_t>>;
 
-/// Calls visit(k) for all ancestors of a frame and the frame itself, starting at the one in the world.
+/// Calls visit(k) for all ancestors of a frame, starting at the one whose parent is the world, and then for the frame.
 template <class Visit>
 void for_each_in_chain(const std::vector<FrameDescription>& frames, const Chains& chains, std::size_t frame,
                        const Visit& visit) {
@@ -53,7 +53,8 @@ std::vector<std::size_t> parents_of(std::span<const FrameDescription> frames) {
     return parents;
 }
 
-/// Returns the numbers of frames, without a cycle among them, so that each follows its parent.
+/// Returns the numbers of all frames in an order in which each frame follows its parent. The parents must not form a
+/// cycle.
 std::vector<std::size_t> parents_first(const std::vector<std::size_t>& parents) {
     std::vector<std::size_t> order;
     std::vector<std::uint8_t> is_known(parents.size(), 0);
@@ -69,8 +70,8 @@ std::vector<std::size_t> parents_first(const std::vector<std::size_t>& parents) 
 /// Value of a sine of amplitude 1, with its derivatives, in 1/s and 1/s^2.
 struct Wave {
     Wave(double frequency, double phase, double time) {
-        // Whole periods are removed before the phase is added, because a large number of periods would absorb the
-        // phase.
+        // Whole periods are removed before the phase is added, because adding the phase to a large number of periods
+        // would round it away.
         const double turns = std::remainder(frequency * time, 1.0) + phase / 360.0;
         const double pulsation = 2.0 * std::numbers::pi * frequency;
         value = sine_of_turns(turns);
@@ -112,7 +113,7 @@ DerivativeBounds wave_bounds(double amplitude, double frequency) {
     return bounds;
 }
 
-/// Visitor that adds the motions of a chain to its bounds, one after the other.
+/// Visitor that extends the bounds of a chain by one motion after the other.
 struct BoundsOf {
     MotionBounds& bounds;
     double from, to;
@@ -187,7 +188,7 @@ void require_factors(const FrameDescription& frame, const KeyedScale& motion) {
 
 bool is_scale(const FrameMotion& motion) { return std::holds_alternative<KeyedScale>(motion); }
 
-// Checks one frame by itself, and normalises its axes.
+// Checks the values of one frame, without its parent, and normalises its axes.
 void prepare(FrameDescription& frame) {
     const auto of_frame = [&](const char* what) { return fmt::format("frame '{}': {}", frame.name, what); };
     detail::require_finite(frame.translation, of_frame("the translation"), "m");
@@ -230,7 +231,7 @@ Iterator first_path_to(Iterator begin, Iterator end, double time) {
     return std::partition_point(begin, end, [time](const BodyPath& path) { return path.end < time; });
 }
 
-/// Returns bounds of all paths that are valid within [from, to].
+/// Returns bounds of all paths that apply within [from, to].
 MotionBounds bounds_of(const std::vector<BodyPath>& paths, double from, double to) {
     MotionBounds all;
     const auto first = first_path_to(paths.begin(), paths.end() - 1, from);
@@ -247,7 +248,8 @@ MotionBounds bounds_of(const std::vector<BodyPath>& paths, double from, double t
 
 }  // namespace
 
-// Every frame is visited once: a walk to the parents ends at a frame that it or an earlier walk has visited.
+// Every frame is visited once: each walk along the parents ends at the first frame that this or an earlier walk
+// visited.
 std::optional<std::size_t> frame_in_circle(std::span<const FrameDescription> frames) {
     const std::vector<std::size_t> parents = parents_of(frames);
     std::vector<std::size_t> walk_of(frames.size(), kWorld);  // first walk that visited the frame

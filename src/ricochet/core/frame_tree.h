@@ -1,6 +1,6 @@
 /// \file
-/// Tree of moving frames of reference, like the links of an arm. Gives the pose and motion of each at a time,
-/// differentiated exactly along the chain.
+/// Tree of moving frames of reference, like the links of an arm. Computes the pose, velocity and acceleration of each
+/// frame at a time. The derivatives are exact along the chain of ancestors.
 /// Method: forward kinematics of serial chains; velocities of composed rigid motions as in J. J. Craig, "Introduction
 /// to Robotics: Mechanics and Control", 3rd ed., 2005, chapter 5.
 #pragma once
@@ -35,21 +35,21 @@ struct Spin {
     Vec3 axis{0, 0, 1};  ///< of any nonzero length
     double rate = 0.0;   ///< degrees/s, by the right-hand rule; the angle is 0 at 0 s
 };
-/// Oscillating rotation by the angle amplitude sin(2 pi (frequency t + phase / 360)).
+/// Oscillating rotation by the angle amplitude * sin(2 pi (frequency t + phase / 360)).
 struct Swing {
     Vec3 axis{0, 0, 1};      ///< of any nonzero length
     double amplitude = 0.0;  ///< degrees
     double frequency = 0.0;  ///< Hz
     double phase = 0.0;      ///< degrees
 };
-/// Oscillating translation by the offset amplitude sin(2 pi (frequency t + phase / 360)).
+/// Oscillating translation by the offset amplitude * sin(2 pi (frequency t + phase / 360)).
 struct Oscillation {
     Vec3 amplitude;          ///< m
     double frequency = 0.0;  ///< Hz
     double phase = 0.0;      ///< degrees
 };
-/// Scale along the frame's axes, about its origin. It also applies to the motions after it and to the children of the
-/// frame.
+/// Scale along the frame's axes, about its origin. The scale also applies to the later motions of the frame and to its
+/// children.
 struct KeyedScale {
     KeyedCurve<Vec3> factors;  ///< all above 0 at keys
 };
@@ -64,8 +64,8 @@ struct FrameDescription {
     Vec3 rotation_axis{0, 0, 1};         ///< of any nonzero length
     double rotation_degrees = 0.0;       ///< about rotation_axis, right-hand rule
     std::vector<FrameMotion> motions{};  ///< in order
-    /// The frame belongs to a dynamic body: it starts at the given pose and then follows set_paths(). Its parent is the
-    /// world and it has no motions.
+    /// The frame belongs to a dynamic body: it starts at the given pose and then follows the paths from set_paths().
+    /// Its parent is the world, and the frame has no motions.
     bool is_driven = false;
 };
 
@@ -77,12 +77,13 @@ struct KeyPose {
     double degrees = 0.0;  ///< by the right-hand rule
 };
 
-/// Returns the motions of a frame through poses. Between two poses its origin moves at constant velocity, and it turns
-/// at a constant rate about one axis by the shortest angle. Before the first pose and after the last it is at rest.
-/// Throws InputError like KeyedCurve. Source: K. Shoemake, "Animating rotation with quaternion curves", SIGGRAPH 1985.
+/// Returns the motions of a frame that passes through the given poses. Between two poses the origin moves at constant
+/// velocity. The frame rotates about one axis at a constant rate, by the smaller of the two possible angles. Before the
+/// first pose and after the last the frame is at rest. Throws InputError like KeyedCurve. Source: K. Shoemake,
+/// "Animating rotation with quaternion curves", SIGGRAPH 1985.
 [[nodiscard]] std::vector<FrameMotion> motions_through(const std::vector<KeyPose>& poses);
 
-/// Returns the first frame whose parents lead back to it, if there is one. Unknown parents count as the world.
+/// Returns the first frame that is its own ancestor, if there is one. Unknown parents count as the world.
 [[nodiscard]] std::optional<std::size_t> frame_in_circle(std::span<const FrameDescription> frames);
 
 /// Frames by name. Any number of threads may read it, but not while set_paths() runs. Results have the same bits on
@@ -91,38 +92,38 @@ class FrameTree {
 public:
     FrameTree() = default;
     /// Throws InputError, naming the frame, for:
-    /// - a name that is empty or taken,
-    /// - an unknown parent, or parents that lead back,
-    /// - an axis without length, an offset that is not finite, or factors that are not above 0,
+    /// - a name that is empty or used twice;
+    /// - an unknown parent, or a frame that is its own ancestor;
+    /// - an axis without length, an offset that is not finite, or factors that are not above 0;
     /// - a driven frame that has a parent or motions.
     explicit FrameTree(std::vector<FrameDescription> frames);
 
     [[nodiscard]] std::size_t size() const { return frames_.size(); }
-    /// Returns the description of a frame. Throws InputError unless frame < size(), as at() does.
+    /// Returns the description of a frame. Like at(), throws InputError unless frame < size().
     [[nodiscard]] const FrameDescription& description(std::size_t frame) const;
     /// Returns the number of the frame with that name.
     [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
-    /// Returns true if a motion of the frame or of one of its ancestors is a scale: then it is not a rigid frame.
+    /// Returns true if a motion of the frame or of one of its ancestors is a scale. Such a frame is not rigid.
     [[nodiscard]] bool is_scaled(std::size_t frame) const;
     /// Returns pose and motion, at a time in s, of a frame that is not scaled. Throws InputError for a scaled frame.
     [[nodiscard]] MovingPose at(std::size_t frame, double time) const;
-    /// Returns the map of points of any frame into the world at a time, in s, with all scales.
+    /// Returns the map from any frame into the world at a time, in s, including all scales.
     [[nodiscard]] AffineMap map(std::size_t frame, double time) const;
-    /// Returns bounds of its motion over [from, to], in s. Scales count as part of the rotation. At keys the bounds
-    /// hold on both sides.
+    /// Returns bounds of the frame's motion over [from, to], in s. Scales count as part of the rotation. The bounds
+    /// include the derivatives on both sides of a key.
     [[nodiscard]] MotionBounds bounds(std::size_t frame, double from, double to) const;
     /// Returns the first time after `time`, in s, with a key in a curve of the frame or its ancestors; infinity if
-    /// there is none. Derivatives can jump there.
+    /// there is none. Derivatives can jump at a key.
     [[nodiscard]] double next_key(std::size_t frame, double time) const;
     /// Returns a hash of the motion: the descriptions of the frame and its ancestors, without names.
     [[nodiscard]] std::uint64_t hash(std::size_t frame) const;
 
-    /// Sets the past and future motion of a driven frame: at least one path, each continuing the one before without a
-    /// gap. The first and the last path also apply before and after their intervals. Throws InputError for other
-    /// frames.
+    /// Sets the past and future motion of a driven frame. paths: at least one; each continues the path before it
+    /// without a gap. The first path also applies before its interval, and the last one after its interval. Throws
+    /// InputError for frames that are not driven.
     void set_paths(std::size_t frame, std::vector<BodyPath> paths);
-    /// Change the same list without a copy of it. They append a path, replace the last one, or remove the paths that
-    /// end before a time, in s. The last path is never removed.
+    /// Change the list of paths in place. These functions append a path, replace the last path, or remove the paths
+    /// that end before a time, in s. The last path is never removed.
     void append_path(std::size_t frame, const BodyPath& path);
     void replace_last_path(std::size_t frame, const BodyPath& path);
     void forget_paths(std::size_t frame, double before);

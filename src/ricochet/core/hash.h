@@ -1,5 +1,5 @@
 /// \file
-/// The state hash in reports and the checksum of saved files: equal hashes mean equal bits.
+/// Hash of the state in reports, and checksum of saved files. Data with equal bits have equal hashes.
 #pragma once
 
 #include <bit>

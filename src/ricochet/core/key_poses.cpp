@@ -1,4 +1,4 @@
-// Frames through poses: a rotation from each pose to the next.
+// Motion of a frame through given poses, with one rotation from each pose to the next.
 #include <algorithm>
 #include <utility>
 
@@ -25,8 +25,8 @@ Quaternion turn_of(const KeyPose& pose) {
     return {sine_of_turns(half + 0.25), (sine_of_turns(half) / size) * pose.axis};
 }
 
-/// Returns the shortest rotation that a quaternion describes, as an angle in degrees over an interval. Whole turns give
-/// no rotation.
+/// Returns the smallest rotation that a quaternion describes, as an angle, in degrees, that grows over an interval. A
+/// whole turn becomes no rotation.
 KeyedRotation shortest_turn(Quaternion q, double from, double to) {
     if (q.w < 0.0) q = {-q.w, -q.v};
     const double sine = length(q.v);

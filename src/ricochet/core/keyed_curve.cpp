@@ -45,7 +45,7 @@ void check(const std::vector<CurveKey<Value>>& keys, CurveEnds ends) {
     }
 }
 
-// Returns the slope, at a key between two segments, of the parabola through the three keys.
+// Returns the slope, at the key between two segments, of the parabola through the three keys of both segments.
 template <class Value>
 Value parabola_slope(double before, const Value& slope_before, double after, const Value& slope_after) {
     const double weight = before / (before + after);
@@ -56,7 +56,7 @@ Value parabola_slope(double before, const Value& slope_before, double after, con
 struct Tridiagonal {
     std::vector<double> lower, middle, upper;
 
-    /// Solves the system by elimination. In each row the middle must exceed the sum of the other two.
+    /// Solves the system by elimination. In each row `middle` must exceed the sum of `lower` and `upper`.
     template <class Value>
     [[nodiscard]] std::vector<Value> solve(std::vector<Value> right) const {
         const std::size_t rows = middle.size();
@@ -74,11 +74,12 @@ struct Tridiagonal {
     }
 };
 
-/// Returns the slopes for which the second derivative is equal on both sides of every key. The slopes at the
-/// neighbouring keys have weights of one over their distance in time. Held curves are at rest at both ends.
-/// A repeated curve has its first key as its last one, which couples the first and the last row. Then x is the solution
-/// of T x = right, less a share of the solution of T z = corner (J. Sherman, W. J. Morrison, Annals of Mathematical
-/// Statistics 21, 1950).
+/// Returns the slopes for which the second derivative is equal on both sides of every key. In the equation of a key,
+/// the weight of a neighbour's slope is the inverse of the time between both keys. Curves with CurveEnds::hold have
+/// slope 0 at both ends.
+/// The first and the last key of a repeated curve are the same key, which couples the first and the last row. The
+/// slopes are then the solution of T x = right, less a multiple of the solution of T z = corner. T is the tridiagonal
+/// matrix without the coupling (J. Sherman, W. J. Morrison, Annals of Mathematical Statistics 21, 1950).
 template <class Value>
 std::vector<Value> smooth_slopes(const std::vector<CurveKey<Value>>& keys, bool repeats) {
     const std::size_t segments = keys.size() - 1;
@@ -156,7 +157,7 @@ KeyedCurve<Value>::KeyedCurve(std::vector<CurveKey<Value>> keys, Interpolation i
     }
 }
 
-// At the ends of a held curve the slope is 0. A repeated curve has its last segment before the first key.
+// A curve with CurveEnds::hold has slope 0 at both ends. In a repeated curve, the last segment precedes the first key.
 template <class Value>
 void KeyedCurve<Value>::set_slopes() {
     const std::size_t count = keys_.size();
@@ -241,8 +242,8 @@ Value KeyedCurve<Value>::second_derivative(double time) const {
     return eased + ((6.0 * s - 4.0) / span) * slopes_[k] + ((6.0 * s - 2.0) / span) * slopes_[k + 1];
 }
 
-/// Includes the cubic on a segment, by the bounds of its coefficients for s from 0 to 1: |6 s (1 - s)| <= 3/2, |6 - 12
-/// s| <= 6, |(1 - s) (1 - 3 s)| <= 1, |6 s - 4| <= 4.
+/// Extends the bounds to include the cubic on a segment. Its derivatives are bounded by bounds of their coefficients
+/// for s from 0 to 1: |6 s (1 - s)| <= 3/2, |6 - 12 s| <= 6, |(1 - s) (1 - 3 s)| <= 1, |6 s - 4| <= 4.
 template <class Value>
 void KeyedCurve<Value>::include_segment(std::size_t k, DerivativeBounds& bounds) const {
     const double span = keys_[k + 1].time - keys_[k].time;

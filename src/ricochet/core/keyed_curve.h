@@ -17,7 +17,7 @@ namespace ricochet {
 /// Interpolation between two keys.
 enum class Interpolation {
     linear,            ///< a straight line; the derivative jumps at keys
-    slow_in_slow_out,  ///< 3 s^2 - 2 s^3 of the change: at rest at every key, continuous derivative
+    slow_in_slow_out,  ///< the change times 3 s^2 - 2 s^3: slope 0 at every key, continuous derivative
     spline,            ///< a cubic; its slope at a key is that of the parabola through the key and both neighbours
                        ///< (Catmull-Rom if keys are evenly spaced): continuous derivative
     cubic_spline,      ///< the cubic spline: continuous second derivative; each key affects the whole curve
@@ -27,7 +27,7 @@ enum class Interpolation {
 
 /// Extrapolation before the first and after the last key.
 enum class CurveEnds {
-    hold,    ///< the value of that key; splines are at rest there, so the derivative is continuous
+    hold,    ///< the value of that key; splines have slope 0 at that key for a continuous derivative
     repeat,  ///< the keys repeat, and each round begins with the value at the end of the one before; splines continue
              ///< smoothly
 };
@@ -46,19 +46,19 @@ using DerivativeBounds = std::array<double, 5>;
 /// Returns the bounds of a product of two functions, by Leibniz' rule.
 [[nodiscard]] DerivativeBounds product(const DerivativeBounds& f, const DerivativeBounds& g);
 
-/// Curve through keys, for Value = double and Value = Vec3. Immutable, and so safe from any number of threads. Time is
-/// in s, values are in the user's unit.
+/// Curve through keys, for Value = double and Value = Vec3. Immutable, so any number of threads may use it. Time is in
+/// s, values are in the user's unit.
 template <class Value>
 class KeyedCurve {
 public:
-    /// Makes a curve with one value at all times. Throws InputError unless it is finite.
+    /// Makes a curve with one value at all times. Throws InputError unless the value is finite.
     explicit KeyedCurve(const Value& constant = Value{});
     /// Throws InputError unless there is a key, all keys are finite and times strictly increase. It also throws if two
     /// keys are so close in time that the derivative between them overflows.
     explicit KeyedCurve(std::vector<CurveKey<Value>> keys, Interpolation interpolation = Interpolation::linear,
                         CurveEnds ends = CurveEnds::hold);
 
-    /// Returns the value at a time; exactly the key's value at a key.
+    /// Returns the value at a time. At a key this is exactly the key's value.
     [[nodiscard]] Value value(double time) const;
     /// Returns the first derivative by time, per s. At a key it is the derivative after the key.
     [[nodiscard]] Value derivative(double time) const;
@@ -67,7 +67,8 @@ public:
 
     /// Returns bounds of the value and of its derivatives between keys, over [from, to].
     [[nodiscard]] DerivativeBounds bounds(double from, double to) const;
-    /// Returns the time of the first key after a time, in s; infinity after the last. Derivatives can jump there.
+    /// Returns the time of the first key after a time, in s; infinity after the last key. Derivatives can jump at a
+    /// key.
     [[nodiscard]] double next_key(double time) const;
 
     [[nodiscard]] const std::vector<CurveKey<Value>>& keys() const { return keys_; }
@@ -75,14 +76,14 @@ public:
     [[nodiscard]] CurveEnds ends() const { return ends_; }
 
 private:
-    // Time within the range of the keys, and the number of rounds that were subtracted.
+    // Time shifted into the range of the keys, and the number of rounds subtracted for that.
     struct Phase {
         double time;
         double rounds;
     };
     [[nodiscard]] Phase phase_of(double time) const;
     [[nodiscard]] bool is_held(double time) const;
-    // Returns the segment that begins at or before a time within the keys.
+    // Returns the segment that contains a time within the range of the keys.
     [[nodiscard]] std::size_t segment_at(double time) const;
     void set_slopes();
     [[nodiscard]] bool is_spline() const {

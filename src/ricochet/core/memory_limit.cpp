@@ -17,8 +17,8 @@
 namespace ricochet {
 namespace {
 
-/// From this value on, in bytes, the limit of a group means no limit. Version 1 of cgroup writes the largest multiple
-/// of the page size. Local: a convention of the operating system.
+/// Smallest value, in bytes, of a group's limit that means "no limit". Version 1 of cgroup reports "no limit" as the
+/// largest multiple of the page size. Local: a convention of the operating system.
 constexpr double kNoGroupLimit = 0x1p60;
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
@@ -36,9 +36,9 @@ std::optional<double> number_in(const std::string& file) {
     return number_of(word);
 }
 
-/// Returns the least limit of a group and its ancestors. In a container the group itself can be invisible; then the
-/// root of the mount may be that group. group: begins with a slash. Uses strings instead of paths, because libstdc++ 12
-/// frees twice if memory runs out while paths are joined.
+/// Returns the least limit of a group and its ancestors. In a container the folder of the group can be invisible. The
+/// root of the mount may then be that group. group: begins with a slash. Uses strings instead of paths, because
+/// libstdc++ 12 frees memory twice if memory runs out while paths are joined.
 double group_limit(const std::string& mount, std::string group, const std::string& file) {
     double least = kUnlimited;
     for (;; group.erase(group.rfind('/'))) {
@@ -59,7 +59,8 @@ bool names_memory(std::string_view controllers) {
     return false;
 }
 
-/// Reads the groups of the process. Lines are "number:controllers:group"; version 2 leaves the controllers empty.
+/// Returns the least limit of the groups of the process. Lines of the file are "number:controllers:group"; version 2
+/// leaves the controllers empty.
 double limit_of_groups(const MemoryFiles& files) {
     double least = kUnlimited;
     std::ifstream groups(files.process / "cgroup");
@@ -80,7 +81,7 @@ double limit_of_groups(const MemoryFiles& files) {
     return least;
 }
 
-/// Returns the pages in use: of the whole address space, and of data.
+/// Returns the numbers of memory pages in use, by the whole address space and by data.
 std::array<double, 2> pages_in_use(const MemoryFiles& files) {
     std::ifstream statm(files.process / "statm");
     std::array<double, 6> pages{};
@@ -95,7 +96,7 @@ double limit_of_resource(__rlimit_resource resource, double pages_used) {
     return std::max(0.0, static_cast<double>(limit.rlim_cur) - used);
 }
 
-/// Returns the available memory of the machine, in bytes. Lines are "MemAvailable:   16203452 kB".
+/// Returns the available memory of the machine, in bytes. Lines of the file look like "MemAvailable: 16203452 kB".
 double memory_of_machine(const MemoryFiles& files) {
     double available = 0.0;
     bool is_known = false;

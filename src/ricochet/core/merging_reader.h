@@ -18,9 +18,10 @@
 
 namespace ricochet {
 
-/// Archive like BinaryReader, for the output of one BinaryWriter per process, all of the same type. Lists are merged
-/// entry by entry; single values are taken from the first process. The first list must contain the ids, which ascend
-/// and are unique among all processes. It determines the order of all other lists.
+/// Archive like BinaryReader that reads the output of one BinaryWriter per process. All processes have written an
+/// object of the same type. Lists are merged entry by entry; single values are taken from the first process. The first
+/// list must contain the ids, which ascend and are unique among all processes. This list determines the order of all
+/// other lists.
 class MergingReader {
 public:
     static constexpr bool kReads = true;
@@ -52,7 +53,7 @@ public:
         find_runs(parts);
         interleave(parts, ids, 1);
     }
-    /// Reads a list that belongs to the ids, with equally many entries for each.
+    /// Reads a list of `size` entries in all processes together, with the same number of entries for each id.
     template <class T>
     requires kIsFlat<T>
     void operator()(std::vector<T>& values, std::size_t size) {
@@ -74,7 +75,8 @@ public:
             to += bytes;
         }
     }
-    /// Reads such a list, which may be empty in some processes: their entries have the value `absent`.
+    /// Reads a list of the same form, which may be empty in some processes. The entries of these processes have the
+    /// value `absent`.
     template <class T>
     void all_or_none(std::vector<T>& values, std::size_t size, const T& absent) {
         std::vector<std::vector<T>> parts(sources_.size());
@@ -84,7 +86,7 @@ public:
         for (std::size_t k = 0; k < parts.size(); ++k) parts[k].resize(sources_[k].count, absent);
         interleave(parts, values, width_of(size));
     }
-    /// Reads a list of entries that are not flat, with equally many for each id.
+    /// Reads a list of entries that are not flat (kIsFlat), with the same number of entries for each id.
     template <class T, class Visit>
     void entries(std::vector<T>& list, const Visit& visit, std::uint64_t expected) {
         std::uint64_t count = 0;

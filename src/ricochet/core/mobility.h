@@ -7,7 +7,7 @@
 
 namespace ricochet {
 
-/// An impulse, in N s, and its moment about an agreed point, in N m s.
+/// An impulse, in N s, and its moment about a reference point, in N m s.
 struct Wrench {
     Vec3 impulse;
     Vec3 moment;
@@ -25,7 +25,7 @@ struct Mobility {
     SymmetricMatrix of_inertia;  ///< in 1/(kg m^2), about the center
     Vec3 center;                 ///< in m; the centre of mass, or a point of the fixed axis
 
-    /// Returns the mobility transformed by a rotation with a translation.
+    /// Returns the mobility in other coordinates. map: a rotation and a translation into these coordinates.
     [[nodiscard]] Mobility seen_by(const AffineMap& map) const {
         return {congruent(map, of_mass), congruent(map, of_inertia), map.point(center)};
     }

@@ -24,7 +24,7 @@ struct MotionPart {
         flight,   ///< free flight: the motion follows the integrator
         impact,   ///< an instantaneous change by surfaces, such as an impact
         contact,  ///< an interval of contact with surfaces
-        driven,   ///< an impact on or contact with surfaces that may add energy: they move or are hot
+        driven,   ///< an impact on, or contact with, surfaces that may add energy because they move or are hot
     };
 
     Kind kind = Kind::flight;
@@ -34,7 +34,7 @@ struct MotionPart {
     RecordedMotion begin;
     RecordedMotion end;
     /// Force over the mass, in m/s^2, at the start, in the middle and at the end of a contact. Springs oscillate within
-    /// a step, so their force in between can lie outside the range of both ends.
+    /// a step, so the force in the middle can be outside the range of the values at both ends.
     std::array<Vec3, 3> forces{};
     bool forces_are_steady = true;  ///< the forces do not depend on time, position or velocity
 };

@@ -44,7 +44,7 @@ void scale(AffineMap& map, const Vec3& factors) {
     }
 }
 
-// Bounds of exp(i angle), by Faa di Bruno's formula.
+// Returns bounds of exp(i angle) and its derivatives, by Faa di Bruno's formula.
 DerivativeBounds turn_bounds(DerivativeBounds a) {
     for (double& bound : a) bound *= std::numbers::pi / 180.0;
     return {1.0, a[1], a[2] + a[1] * a[1], a[3] + 3.0 * a[1] * a[2] + a[1] * a[1] * a[1],

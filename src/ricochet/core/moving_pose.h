@@ -34,7 +34,7 @@ struct MovingPose {
 
 /// Upper bounds of the motion of a frame over an interval of time. They limit the magnitudes of the first to fourth
 /// derivatives of two quantities: its origin, in m/s^n, and its rotation matrix (operator norm), in 1/s^n. Entry 0 is 0
-/// and 1.
+/// for the origin and 1 for the rotation.
 struct MotionBounds {
     DerivativeBounds origin{};
     DerivativeBounds rotation{1.0, 0.0, 0.0, 0.0, 0.0};
@@ -45,7 +45,8 @@ void shift(MovingPose& pose, const Vec3& offset, const Vec3& rate = {}, const Ve
 /// Rotates a frame about one of its own axes, of unit length, by an angle in degrees with its derivatives.
 void turn(MovingPose& pose, const Vec3& axis, double degrees, double rate = 0.0, double second = 0.0);
 
-/// Scales the map of a frame along its own axes. The velocities and accelerations of its pose are no longer valid.
+/// Scales the map of a frame along its own axes. The velocities and accelerations of the frame's pose are invalid
+/// afterwards.
 void scale(AffineMap& map, const Vec3& factors);
 
 /// Returns bounds of the matrix of a rotation about a fixed axis. degrees: bounds of its angle.

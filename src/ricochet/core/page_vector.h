@@ -26,7 +26,7 @@ struct PageAllocator {
 
     PageAllocator() = default;
     template <class U>
-    PageAllocator(const PageAllocator<U>& /*other*/) {}  // NOLINT(google-explicit-constructor): as allocators convert
+    PageAllocator(const PageAllocator<U>& /*other*/) {}  // NOLINT(google-explicit-constructor): allocators convert
 
     [[nodiscard]] T* allocate(std::size_t count) {
         if (has_own_pages(count)) return static_cast<T*>(take_pages(count * sizeof(T)));
@@ -48,8 +48,8 @@ struct PageAllocator {
 template <class T>
 using PageVector = std::vector<T, PageAllocator<T>>;
 
-/// Returns the pages of a list that has its own; an empty span for a smaller list. Once the list does not change any
-/// more, they may be replaced by other pages with the same bytes, even read-only ones.
+/// Returns the pages of a list that has pages of its own; an empty span for a smaller list. Once the list no longer
+/// changes, other pages with the same bytes may replace them, even read-only ones.
 template <class T>
 [[nodiscard]] std::span<const std::byte> own_pages(const PageVector<T>& list) {
     if (list.empty() || !PageAllocator<T>::has_own_pages(list.capacity())) return {};

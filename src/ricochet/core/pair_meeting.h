@@ -20,7 +20,7 @@ struct MetSphere {
     RecordedMotion before;
     RecordedMotion after;
     std::uint32_t material = 0;  ///< number of the material
-    double contact_path = 0.0;   ///< path on walls in this step by approximate sliding and rolling arcs, in m
+    double contact_path = 0.0;   ///< length of approximate sliding and rolling arcs on walls in this step, in m
 };
 
 /// Contact of two of the spheres.

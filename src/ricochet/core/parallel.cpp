@@ -30,10 +30,11 @@ void require_loop(std::size_t block_size, bool has_function) {
     if (!has_function) throw InputError("parallel loop: found an empty function, expected one that can be called");
 }
 
-/// Exception of the first block that throws. It is the same for any number of threads.
+/// Exception of the block with the lowest number among the blocks that throw. It is the same for any number of threads.
 class FirstError {
 public:
-    /// Runs a block. Skips blocks after one that has thrown; blocks before it still run, because they may throw, too.
+    /// Runs a block. Skips the block if one with a lower number has thrown. Blocks with lower numbers still run,
+    /// because they may throw, too.
     template <class Run>
     void watch(std::size_t block, const Run& run) {
         if (block > first_.load(std::memory_order_relaxed)) return;
@@ -56,8 +57,8 @@ private:
     std::exception_ptr error_;
 };
 
-/// Most threads. It is far above the number of processors of any machine; more threads would only waste memory on
-/// stacks.
+/// Largest number of threads. It is far above the number of processors of any machine. More threads would only waste
+/// memory on stacks.
 constexpr int kMostThreads = 1024;
 
 int checked_threads(int threads) {
@@ -71,7 +72,7 @@ int checked_threads(int threads) {
 
 thread_local const std::function<void()>* loop_stop = nullptr;
 
-/// Scope that gives the thread of a block the stop request of the thread that began the loop.
+/// Scope in which the thread of a block uses the LoopStop function of the thread that began the loop.
 class HandedOn {
 public:
     explicit HandedOn(const std::function<void()>* stop) : own_(std::exchange(loop_stop, stop)) {}
@@ -141,8 +142,8 @@ double ordered_sum(std::size_t count, std::size_t block_size,
     return std::accumulate(partial.begin(), partial.end(), 0.0);
 }
 
-// With the thread sanitizer the sort is serial. The sanitizer does not see how the packaged library synchronises the
-// threads of its sort. No code of this library runs inside the sort to report it.
+// The sort is serial with the thread sanitizer. The sanitizer does not see how the packaged TBB synchronises the
+// threads of its sort. No code of Ricochet runs inside the sort that could report the synchronisation.
 void parallel_sort(std::vector<std::uint64_t>& values) {
 #if defined(RICOCHET_THREAD_SANITIZER)
     std::sort(values.begin(), values.end());

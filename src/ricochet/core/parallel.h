@@ -34,14 +34,14 @@ private:
 /// Calls body(block, begin, end) for [0, count) in blocks of block_size, in any order, on any thread. Runs serially if
 /// there is one block. A body that waits for its own tasks is not interrupted by another body on the same thread, so
 /// bodies may use thread_local memory.
-/// If bodies throw, the exception of the first such block is rethrown, for any number of threads. All blocks before
-/// that one have finished by then, and some of those after it. Throws InputError for a block_size of 0 and an empty
-/// function.
+/// If bodies throw, the exception of the throwing block with the lowest number is rethrown, for any number of threads.
+/// By then all blocks with lower numbers have finished, and some blocks with higher numbers. Throws InputError for a
+/// block_size of 0 and an empty function.
 void parallel_for_blocks(std::size_t count, std::size_t block_size,
                          const std::function<void(std::size_t block, std::size_t begin, std::size_t end)>& body);
 
-/// Returns the sum over [0, count) of block sums, added in block order: the same bits for any thread count. Throws like
-/// parallel_for_blocks().
+/// Returns the sum over [0, count). The sums of the blocks are added in block order, so the bits do not depend on the
+/// number of threads. Throws like parallel_for_blocks().
 [[nodiscard]] double ordered_sum(std::size_t count, std::size_t block_size,
                                  const std::function<double(std::size_t begin, std::size_t end)>& block_sum);
 
@@ -54,24 +54,25 @@ struct KeyedIndex {
     std::uint32_t index = 0;
 };
 
-/// Sorts by key in ascending order with all threads; equal keys keep their order. The time is proportional to the
-/// number of items and to the number of bits in which keys differ. spare: working memory, which has as many items
-/// afterwards.
+/// Sorts by key in ascending order with all threads; items with equal keys keep their order. The time is proportional
+/// to the number of items and to the number of bits in which keys differ. spare: working memory, which is resized to
+/// the number of items.
 void parallel_sort(std::vector<KeyedIndex>& items, std::vector<KeyedIndex>& spare);
 
 /// Returns TBB's version, for `--version` and reports.
 [[nodiscard]] const char* tbb_version();
 
 /// Sum whose bits do not depend on the order of its terms, accumulated from any number of threads. It is a 128-bit
-/// two's complement count of `unit`s. Terms are rounded to the unit; everything after that is exact. Terms beyond 2^126
-/// units and NaN are refused, and totals wrap beyond 2^127 units.
+/// two's complement count of `unit`s. Terms are rounded to the unit; all later operations are exact. add() refuses NaN
+/// and terms beyond 2^126 units, and totals wrap beyond 2^127 units.
 class FixedPointSum {
 public:
     /// Adds a term; thread-safe. Returns false, and adds nothing, if the term cannot be represented.
     bool add(double term, double unit) {
         const double scaled = term / unit;
         if (!(std::fabs(scaled) < 0x1p126)) return false;
-        // The magnitude, split into a multiple of 2^64 and the rest, each exact; then its two's complement.
+        // The magnitude is split exactly into a multiple of 2^64 and a remainder. Negative terms then become a two's
+        // complement.
         const double magnitude = std::nearbyint(std::fabs(scaled));
         const double high_part = std::floor(magnitude * 0x1p-64);
         auto high = static_cast<std::uint64_t>(high_part);
@@ -96,7 +97,7 @@ public:
         return (negative ? -magnitude : magnitude) * unit;
     }
 
-    /// Returns the counter itself, low word first. Not safe while other threads add.
+    /// Returns the 128-bit count, low word first. Not safe while other threads add.
     [[nodiscard]] std::array<std::uint64_t, 2> words() const {
         return {low_.load(std::memory_order_relaxed), high_.load(std::memory_order_relaxed)};
     }

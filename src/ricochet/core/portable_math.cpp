@@ -8,8 +8,8 @@
 namespace ricochet {
 namespace {
 
-// ln 2 in two parts. The first has few enough digits that its products with exponents are exact. Mathematical
-// constants, and the range of the exponential function.
+// ln 2 in two parts. The first part has so few digits that its products with exponents are exact. These are
+// mathematical constants and the range of the exponential function.
 constexpr double kLn2High = 0x1.62e42fee00000p-1;
 constexpr double kLn2Low = 0x1.a39ef35793c76p-33;
 constexpr double kLargestExponent = 709.782712893384;

@@ -11,7 +11,7 @@ namespace ricochet {
 [[nodiscard]] double portable_log(double x);
 /// Returns x^y for x > 0, with a relative error of about 2^-52 (1 + |y log x|).
 [[nodiscard]] double portable_pow(double x, double y);
-/// Returns the sine of 2 pi turns. Whole turns are removed exactly, so late times lose no accuracy.
+/// Returns the sine of 2 pi turns. Whole turns are removed exactly, so large arguments lose no accuracy.
 [[nodiscard]] double sine_of_turns(double turns);
 
 /// Returns the angle with the given sine and cosine (both >= 0), in whole turns from 0 to 1/4. They must not both be 0.

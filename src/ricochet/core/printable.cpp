@@ -7,7 +7,7 @@
 namespace ricochet {
 namespace {
 
-/// First character of a text.
+/// The first character of a text.
 struct Character {
     std::size_t length = 0;  ///< in bytes; 0 if it is not valid UTF-8
     char32_t code = 0;
@@ -27,7 +27,7 @@ Character character_of(std::string_view text) {
     return {length, code};
 }
 
-/// Returns true for control characters of both blocks and for characters that change the direction of text.
+/// Returns true for control characters (C0 and C1) and for characters that change the direction of text.
 bool is_obeyed(char32_t code) {
     const auto between = [&](char32_t first, char32_t last) { return code >= first && code <= last; };
     return code < 0x20 || between(0x7F, 0x9F) || code == 0x061C || between(0x200E, 0x200F) || between(0x2028, 0x202E) ||

@@ -1,5 +1,6 @@
 /// \file
-/// Four doubles at once, and three-component vectors of them. Each of the four gets the same bits as scalar doubles.
+/// Vectors of four doubles (lanes), and three-component vectors of them. Each lane gets the same bits as a computation
+/// with scalar doubles.
 ///
 /// Uses the vector extensions of GCC and clang, which are fast in functions compiled for AVX2. Without AVX2, GCC
 /// processes vectors element by element. Everything is inlined at any optimisation level, since the calling convention
@@ -12,8 +13,8 @@
 
 #include "ricochet/core/vec3.h"
 
-/// Marks building blocks of functions that are compiled for several kinds of processors: they are inlined into their
-/// callers.
+/// Forces the inlining of a function into its callers. For parts of functions that are compiled for several kinds of
+/// processors.
 #define RICOCHET_INLINE [[gnu::always_inline]] inline
 
 namespace ricochet {
@@ -33,8 +34,8 @@ struct Quad {
     Lanes lanes;
 };
 
-/// Loads four consecutive doubles. Does not use memcpy(), because GCC splits it into two halves if AVX is not enabled
-/// yet.
+/// Loads four consecutive doubles. Does not use memcpy(), because GCC splits the copy into two halves if AVX is not
+/// enabled yet at that stage of compilation.
 [[nodiscard]] RICOCHET_INLINE Quad load_quad(const double* from) {
     return {*reinterpret_cast<const Quad::Stored*>(from)};
 }
@@ -65,7 +66,7 @@ RICOCHET_INLINE void store(const Quad& a, double* to) { *reinterpret_cast<Quad::
 [[nodiscard]] RICOCHET_INLINE Quad select(const QuadMask& mask, const Quad& a, const Quad& b) {
     return {mask.lanes ? a.lanes : b.lanes};
 }
-/// Returns the larger one, with the semantics of std::max().
+/// Returns the larger number per lane, with the semantics of std::max().
 [[nodiscard]] RICOCHET_INLINE Quad larger(const Quad& a, const Quad& b) { return select(a < b, b, a); }
 [[nodiscard]] RICOCHET_INLINE Quad root(const Quad& a) {
     // GCC turns four std::sqrt() into four calls, since they may set errno.
@@ -81,7 +82,7 @@ RICOCHET_INLINE void store(const Quad& a, double* to) { *reinterpret_cast<Quad::
 #endif
 }
 
-/// Scalar versions, for templates that handle one number or four.
+/// Scalar versions, for templates that compute with one number or with four.
 [[nodiscard]] RICOCHET_INLINE bool any(bool a) { return a; }
 template <class T>
 [[nodiscard]] RICOCHET_INLINE T select(bool mask, const T& a, const T& b) {

@@ -24,7 +24,7 @@ public:
 
     /// Draws uniformly in [0, 1), with 53 random bits.
     double uniform();
-    /// Draws uniformly in [mean - spread, mean + spread): the scene file's pair [mean, spread].
+    /// Draws uniformly in [mean - spread, mean + spread), as the pair [mean, spread] of a scene file specifies.
     double uniform_around(double mean, double spread);
     /// Draws a uniform direction on the unit sphere.
     Vec3 unit_vector();

@@ -25,7 +25,7 @@ struct RecordedImpact {
     RecordedMotion before;
     RecordedMotion after;
     std::vector<Surface> surfaces;
-    std::vector<std::uint32_t> supported_by;  ///< surfaces of the contact interval that the impact ended
+    std::vector<std::uint32_t> supported_by;  ///< numbers of the surfaces of the contact interval that the impact ended
 };
 
 }  // namespace ricochet

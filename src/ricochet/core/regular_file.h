@@ -1,5 +1,5 @@
 /// \file
-/// Reader of whole files that may come from outside.
+/// Reader of whole files from untrusted sources.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace ricochet {
 
-/// Reads a regular file whole. Refuses pipes, because the read would block, and devices, because they may never end.
-/// Throws InputError, naming the file and `expected`, for these, for unreadable files and for files of more than `most`
-/// bytes.
+/// Reads a whole regular file. Refuses pipes, because the read would block, and devices, because their data may never
+/// end. Throws InputError for these, for unreadable files and for files of more than `most` bytes. The message names
+/// the file and `expected`.
 [[nodiscard]] std::string read_regular_file(const std::filesystem::path& file, std::uint64_t most,
                                             const std::string& expected);
 

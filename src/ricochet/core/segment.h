@@ -11,7 +11,8 @@ struct Segment {
     Vec3 from;
     Vec3 to;
     double time = 0.0;  ///< in s, simulation time at the start of the flight or contact phase
-    // Simulation times of its ends, in s, if colliders move: the segment is tested in their frames at these times.
+    // Simulation times of both ends, in s, if colliders move. The segment is tested in the colliders' frames at these
+    // times.
     double begin = 0.0;
     double end = 0.0;
 };

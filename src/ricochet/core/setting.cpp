@@ -9,7 +9,7 @@ namespace {
 
 std::string in_unit(std::string_view unit) { return unit.empty() ? std::string() : fmt::format(" ({})", unit); }
 
-/// Returns the allowed numbers in words. A bound of 1e75 tells a reader nothing unless it is exceeded.
+/// Returns the allowed numbers in words. The text mentions a technical bound such as 1e75 only if the value exceeds it.
 std::string expectation(double value, const Range& range, std::string_view unit) {
     const bool is_bounded = range.upper < kLargestCoordinate;
     if (range.lower == -range.upper && !is_bounded) {

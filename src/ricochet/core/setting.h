@@ -1,6 +1,7 @@
 /// \file
-/// Private to the library: tables of settings, each beside its struct. One line gives the name, member, range, unit and
-/// meaning of a setting. The keys of scenes, the checks of the library and the fingerprint of saved states follow.
+/// Private to the library: tables of settings, each defined beside its struct. One line of a table gives the name,
+/// member, range, unit and meaning of a setting. The keys of scenes, the checks of the library and the fingerprint of
+/// saved states are derived from these tables.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +22,7 @@ struct Range {
     double lower = -std::numeric_limits<double>::infinity();
     double upper = std::numeric_limits<double>::infinity();
     bool lower_open = false;      ///< lower itself is not allowed
-    bool takes_infinity = false;  ///< infinity is allowed, which no scene can express
+    bool takes_infinity = false;  ///< infinity is allowed; only code can set it, no scene
 
     [[nodiscard]] constexpr bool contains(double x) const {
         return (lower_open ? x > lower : x >= lower) && x <= upper;
@@ -44,13 +45,13 @@ inline constexpr Range kLengthOrZero = between(0.0, kLargestCoordinate);
 inline constexpr Range kCount = between(0.0, 4294967295.0);
 inline constexpr Range kCountFromOne = between(1.0, 4294967295.0);
 inline constexpr Range kSeed = between(0.0, 18446744073709551615.0);
-/// Kelvin. Hotter than the inside of any star, and the fourth power is far from overflow.
+/// Temperatures in K. The upper limit is hotter than the inside of any star, and its fourth power is far from overflow.
 inline constexpr Range kTemperature = between(0.0, 1e12);
 
-/// Value of Setting::is_required.
+/// Value of Setting::is_required for a setting that a scene must contain.
 inline constexpr bool kMustBeGiven = true;
 
-/// A line of the table of a struct.
+/// One setting: a line in the table of a struct.
 template <class Struct>
 struct Setting {
     std::string_view name;
@@ -73,11 +74,11 @@ template <class Struct>
     return std::visit([&](auto member) { return SettingValue(object.*member); }, line.member);
 }
 
-/// Returns "found VALUE, expected ..." for a value outside the range, and an empty text for others.
+/// Returns "found VALUE, expected ..." for a value outside the range, and an empty text for other values.
 [[nodiscard]] std::string refusal(const SettingValue& value, const Range& range, std::string_view unit);
 
-/// Returns "NAME: found VALUE, expected ..." for the first member outside its range, and an empty text if there is
-/// none. The owner is written before the name.
+/// Returns "NAME: found VALUE, expected ..." for the first member outside its range, and an empty text if there is no
+/// such member. owner: text before the name.
 template <class Struct>
 [[nodiscard]] std::string first_refusal(const Struct& object, const auto& table, std::string_view owner = "") {
     for (const Setting<Struct>& line : table) {
@@ -87,7 +88,7 @@ template <class Struct>
     return "";
 }
 
-/// Throws InputError if there is such a member. The owner is written before the name.
+/// Throws InputError with the text of first_refusal(), unless it is empty. owner: text before the name.
 template <class Struct>
 void require_settings(const Struct& object, const auto& table, std::string_view owner) {
     const std::string text = first_refusal(object, table, owner);

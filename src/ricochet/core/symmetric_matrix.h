@@ -1,5 +1,5 @@
 /// \file
-/// Symmetric 3 x 3 matrices: moments of inertia and of mass.
+/// Symmetric 3 x 3 matrices, for inertia tensors and second moments of mass.
 #pragma once
 
 #include "ricochet/core/transform.h"

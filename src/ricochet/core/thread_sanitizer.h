@@ -1,6 +1,7 @@
 /// \file
-/// Private: happens-before edges that the thread sanitizer cannot see, because the packaged TBB and Embree are built
-/// without it. Without the sanitizer every call compiles to nothing.
+/// Private: reports happens-before edges to the thread sanitizer. The sanitizer cannot see the synchronisation in the
+/// packaged TBB and Embree, because these libraries are built without it. Without the sanitizer every call compiles to
+/// nothing.
 #pragma once
 
 #ifdef RICOCHET_THREAD_SANITIZER

@@ -22,7 +22,7 @@ SineCosine sine_cosine_degrees(double degrees) {
 
 }  // namespace
 
-// Uses Rodrigues' rotation formula; columns are scaled by the placement's scale.
+// Uses Rodrigues' rotation formula. The columns of the matrix are multiplied by the placement's scale.
 AffineMap world_from_local(const Placement& placement) {
     if (!is_finite(placement.position) || !is_finite(placement.scale) || !std::isfinite(placement.rotation_degrees)) {
         throw InputError("placement: found a number that is not finite, expected finite numbers");

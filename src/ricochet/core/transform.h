@@ -14,7 +14,8 @@ struct Placement {
     Vec3 scale{1, 1, 1};            ///< per axis, not zero; a negative factor mirrors
 };
 
-/// An affine map x -> M x + t. Its name gives its direction: `world_from_local`.
+/// An affine map x -> M x + t. Names of maps give the direction: `world_from_local` maps local coordinates to the
+/// world.
 struct AffineMap {
     Vec3 row_x{1, 0, 0};
     Vec3 row_y{0, 1, 0};
@@ -23,13 +24,13 @@ struct AffineMap {
 
     [[nodiscard]] Vec3 point(const Vec3& p) const { return direction(p) + translation; }
     [[nodiscard]] Vec3 direction(const Vec3& d) const { return {dot(row_x, d), dot(row_y, d), dot(row_z, d)}; }
-    /// Applies the inverse of the linear part, if it is a rotation; summed over the rows in their order.
+    /// Applies the inverse of the linear part, which must be a rotation. Sums over the rows in their order.
     [[nodiscard]] Vec3 direction_back(const Vec3& d) const { return d.x * row_x + d.y * row_y + d.z * row_z; }
     [[nodiscard]] double determinant() const { return dot(row_x, cross(row_y, row_z)); }
     /// Returns true if the map mirrors, so that triangle windings must be flipped.
     [[nodiscard]] bool mirrors() const { return determinant() < 0.0; }
 
-    /// Saves or restores the map. a: an archive, which takes members one by one.
+    /// Saves or restores the map. a: an archive, which is called with each member.
     template <class Archive>
     void archive(Archive& a) {
         a(row_x), a(row_y), a(row_z), a(translation);

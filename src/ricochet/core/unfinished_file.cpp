@@ -10,7 +10,7 @@
 
 namespace ricochet {
 
-/// List entry of a file; the list can be traversed by a signal handler.
+/// List entry of a file. A signal handler can traverse the list.
 struct UnfinishedFile::Entry {
     std::string path;
     pid_t writer = 0;
@@ -25,8 +25,8 @@ void take_list() {
     while (in_use.test_and_set(std::memory_order_acquire)) continue;
 }
 
-/// Lock of the list. While a thread has it, no signal handler runs on that thread, so a handler may wait for the lock.
-/// Locks of the standard library may not be taken in a handler.
+/// Lock of the list. No signal handler runs on a thread that owns the lock, so a handler may wait for the lock. A
+/// handler must not use locks of the standard library.
 class ListLock {
 public:
     ListLock() noexcept {

@@ -1,13 +1,13 @@
 /// \file
-/// Temporary files that a signal must not leave behind, and the programs that write them.
+/// Temporary files that must be removed if a signal ends the process, and the programs that write them.
 #pragma once
 
 #include <filesystem>
 
 namespace ricochet {
 
-/// Registers a temporary file for the lifetime of the object, so that remove_unfinished_files() removes it. It neither
-/// creates nor removes the file itself. Any number of them can exist, on any threads.
+/// Registers a temporary file for the lifetime of the object, so that remove_unfinished_files() removes it. The object
+/// neither creates nor removes the file itself. Any number of objects can exist, on any threads.
 class UnfinishedFile {
 public:
     explicit UnfinishedFile(const std::filesystem::path& path);
@@ -15,7 +15,8 @@ public:
     UnfinishedFile(const UnfinishedFile&) = delete;
     UnfinishedFile& operator=(const UnfinishedFile&) = delete;
 
-    /// Names the child process that writes the file and is to be killed first; 0 after it has been waited for.
+    /// Sets the child process that writes the file. It is killed before the file is removed. Pass 0 once waitpid() has
+    /// returned its status.
     void set_writer(int process);
 
 private:
@@ -27,8 +28,8 @@ private:
 };
 
 /// Kills the programs that write unfinished files and removes the files. Safe in a signal handler. The process has to
-/// end right afterwards: writers do not know that their files are gone, and threads that begin or end such a file wait
-/// forever.
+/// end right afterwards: writers do not know that their files are removed, and threads that create or destroy an
+/// UnfinishedFile wait forever.
 void remove_unfinished_files() noexcept;
 
 }  // namespace ricochet

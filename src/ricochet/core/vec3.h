@@ -17,7 +17,7 @@ struct Vec3 {
     constexpr Vec3() = default;
     constexpr Vec3(double x_value, double y_value, double z_value) : x(x_value), y(y_value), z(z_value) {}
 
-    /// Component 0, 1 or 2.
+    /// Returns component 0, 1 or 2.
     [[nodiscard]] constexpr double operator[](int axis) const { return axis == 0 ? x : (axis == 1 ? y : z); }
     constexpr double& operator[](int axis) { return axis == 0 ? x : (axis == 1 ? y : z); }
 
@@ -57,16 +57,16 @@ struct Vec3 {
 [[nodiscard]] inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
 /// Returns the unit vector along a. Undefined for the zero vector, which callers must exclude.
 [[nodiscard]] inline Vec3 normalized(const Vec3& a) { return a / length(a); }
-/// Componentwise minimum and maximum.
+/// Return the componentwise minimum and maximum.
 [[nodiscard]] constexpr Vec3 min(const Vec3& a, const Vec3& b) {
     return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
 }
 [[nodiscard]] constexpr Vec3 max(const Vec3& a, const Vec3& b) {
     return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
-/// Componentwise absolute value.
+/// Returns the componentwise absolute value.
 [[nodiscard]] inline Vec3 abs(const Vec3& a) { return {std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}; }
-/// Largest absolute component (the infinity norm).
+/// Returns the largest absolute component (the infinity norm).
 [[nodiscard]] inline double max_abs(const Vec3& a) {
     return std::max(std::fabs(a.x), std::max(std::fabs(a.y), std::fabs(a.z)));
 }

@@ -12,8 +12,8 @@ namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-/// Relative error bound. It covers the rounding to single precision and the rounding of the margin itself. Local: an
-/// error bound of this arithmetic.
+/// Relative error bound. It covers the rounding to single precision and the rounding of the error bound itself. Local:
+/// an error bound of this arithmetic.
 constexpr float kOutward = 0x1p-22F;
 
 /// A number in single precision with a bound on its error.
@@ -26,23 +26,23 @@ struct Rounded {
     float error;
 };
 
-/// Returns the relative cost of a node for a query. It is the sum of the node's edges, which is positive for flat boxes
-/// too.
+/// Returns the relative cost of a node for a query. It is the sum of the lengths of the node's edges, because this sum
+/// is positive even for flat boxes.
 double cost(const std::array<float, 3>& lower, const std::array<float, 3>& upper) {
     double sum = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) sum += double{upper[axis]} - double{lower[axis]};
     return sum;
 }
 
-/// Returns the number of boxes in a full child of a node over `count` boxes. It is a power of four, so that nodes far
-/// down are full.
+/// Returns the number of boxes in a full child of a node over `count` boxes. The number is a power of four, so that
+/// nodes at the lower levels are full.
 std::uint32_t full_child_of(std::uint32_t count) {
     std::uint32_t full = 1;
     while (full < (count + 3) / 4) full *= 4;
     return full;
 }
 
-/// Returns half of the given number of boxes, in full children.
+/// Returns about half of the given number of boxes, rounded to a multiple of `full`.
 std::uint32_t half_of(std::uint32_t count, std::uint32_t full) {
     return std::min(count, std::max(full, (count / 2 + full / 2) / full * full));
 }
@@ -72,8 +72,8 @@ void BoxTree::build(std::span<const Box3> boxes) {
     cost_when_built_ = place_branches();
 }
 
-/// Partially sorts the boxes along the longest side of the box of their centres. The centres of the boxes before
-/// `middle` then come before all others.
+/// Partially sorts the boxes from `begin` to `end` along the longest side of the box around their centres. The centres
+/// of the boxes before `middle` then come first along that side.
 void BoxTree::halve(std::uint32_t begin, std::uint32_t middle, std::uint32_t end, std::span<const Box3> boxes) {
     if (middle <= begin || middle >= end) return;
     Box3 centers;
@@ -120,7 +120,8 @@ BoxTree::Bounds BoxTree::bounds_of(const Node& node) {
             {-least(-node.upper_x), -least(-node.upper_y), -least(-node.upper_z)}};
 }
 
-/// Updates the bounds of all branches. Children are stored behind their parents. Returns the cost of all nodes.
+/// Updates the bounds of all branches from the last node to the first, because children are stored after their parents.
+/// Returns the cost of all nodes.
 double BoxTree::place_branches() {
     double sum = 0.0;
     for (std::size_t i = nodes_.size(); i-- > 0;) {

@@ -1,10 +1,11 @@
 /// \file
-/// A hierarchy that finds the boxes that intersect a box, for boxes that move from step to step. It is refitted to the
-/// moved boxes and rebuilt if the refit has made it inefficient. The boxes found do not depend on that.
+/// Bounding volume hierarchy for boxes that move from step to step. A query finds all boxes that intersect a given box.
+/// The hierarchy is refitted to the moved boxes, and rebuilt if refitting has made it inefficient. The result of a
+/// query does not depend on this.
 ///
 /// A node stores four children side by side, in single precision and rounded outward. One comparison tests all of them
 /// (H. Dammertz, J. Hanika, A. Keller, "Shallow bounding volume hierarchies for fast SIMD ray tracing of incoherent
-/// rays", EGSR 2008). The boxes themselves decide, in doubles.
+/// rays", EGSR 2008). A test of the boxes in double precision then decides.
 #pragma once
 
 #include <array>
@@ -22,7 +23,7 @@ namespace ricochet {
 /// A tree over boxes. Queries are safe from any number of threads, but not concurrently with fit().
 class BoxTree {
 public:
-    /// Replaces the boxes, none of which may be empty. Their number may differ from before.
+    /// Replaces the boxes, none of which may be empty. The number of boxes may change.
     void fit(std::span<const Box3> boxes) {
         fit(boxes.size(), [&](std::uint32_t i) { return boxes[i]; });
     }
@@ -46,7 +47,7 @@ public:
             return false;
         }));
     }
-    /// Visits boxes in the same way until is_it(i) is true for one. Returns true if there is one.
+    /// Visits boxes like near() until is_it(i) returns true for one of them. Returns true if this happens.
     template <class IsIt>
     [[nodiscard]] bool any_near(const Box3& box, const IsIt& is_it) const {
         if (nodes_.empty()) return false;
@@ -74,7 +75,7 @@ public:
     [[nodiscard]] bool has_near(const Box3& box) const {
         return any_near(box, [](std::uint32_t) { return true; });
     }
-    /// Returns a box around all boxes. It is empty if there are none.
+    /// Returns a box around all boxes. It is empty if there are no boxes.
     [[nodiscard]] const Box3& bounds() const { return bounds_; }
 
     /// Returns true if two boxes have a point in common.
@@ -89,7 +90,7 @@ private:
     using Quad = float __attribute__((vector_size(16)));
     using Mask = int __attribute__((vector_size(16)));
     static constexpr std::size_t kLanes = 4;
-    /// Flag of a child that is a box. The other bits are its position in the order of the leaves.
+    /// Flag of a child that is a box. The other bits are the box's position in the order of the leaves.
     static constexpr std::uint32_t kBox = 0x80000000U;
     static constexpr std::uint32_t kNoChild = 0xFFFFFFFFU;
 
@@ -97,7 +98,7 @@ private:
         std::array<float, 3> lower;
         std::array<float, 3> upper;
     };
-    /// Bounds of all children. They are NaN for a missing child.
+    /// Bounds of four children. The bounds of a missing child are NaN.
     struct alignas(64) Node {
         Quad lower_x, lower_y, lower_z;
         Quad upper_x, upper_y, upper_z;
@@ -129,7 +130,7 @@ private:
         });
         return boxes;
     }
-    /// Updates the boxes in the order of the leaves, so that neighbouring boxes are requested together.
+    /// Updates the boxes in the order of the leaves, so that box_of is called for neighbouring boxes in succession.
     template <class BoxOf>
     void place_boxes(const BoxOf& box_of) {
         parallel_for_blocks(nodes_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -151,14 +152,14 @@ private:
 
     /// Boxes or nodes per unit of parallel work.
     static constexpr std::size_t kBlock = 1 << 13;
-    /// Growth of the total size of the branches at which a new hierarchy is built. Local, because only the cost depends
-    /// on it.
+    /// Growth of the cost of all branches since the last build, at which the hierarchy is rebuilt. Local, because only
+    /// the cost depends on it.
     static constexpr double kPoor = 2.0;
-    /// Capacity of the stack of open nodes. Dividing 2^31 boxes by four leaves at most 17 levels, and at most three
-    /// children wait on each but the last.
+    /// Capacity of the stack of open nodes. Division of 2^31 boxes by four at each level gives at most 17 levels. At
+    /// most three children wait on each level except the last.
     static constexpr std::size_t kMostOpen = 64;
 
-    std::vector<Node> nodes_;           ///< depth first
+    std::vector<Node> nodes_;           ///< in depth-first order
     std::vector<std::uint32_t> order_;  ///< indices of the boxes, in the order of the leaves
     std::vector<Box3> boxes_;           ///< in the same order
     Box3 bounds_;                       ///< encloses all boxes

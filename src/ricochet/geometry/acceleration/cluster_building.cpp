@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::size_t kBlock = 1 << 12;
 
-/// Cost of a cluster in memory and time besides its box's surface, in units of the mean triangle's box surface.
-/// Neighbours along the curve need not be neighbours in space, so full clusters are not the best ones. Local, because
-/// only the cost depends on it.
+/// Fixed cost of a cluster in memory and time, in units of the mean surface of a triangle's box. The surface of the
+/// cluster's own box is added to it. Neighbours along the Morton curve need not be neighbours in space, so full
+/// clusters are not always optimal. Local, because only the cost depends on it.
 constexpr double kCostOfCluster = 2.0;
 
 Box3 box_of(std::span<const Vec3> vertices, const Triangle& triangle) {
@@ -74,8 +74,8 @@ double half_area(const Box3& box) {
     return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
-/// Returns the ends of clusters along a block of the order, given the triangles' boxes, so that the sum of their costs
-/// is minimal. Method: dynamic programming over the size of the last cluster.
+/// Divides consecutive triangles into clusters so that the sum of the clusters' costs is minimal. Returns the ends of
+/// the clusters. boxes: of the triangles, in order. Method: dynamic programming over the size of the last cluster.
 std::vector<std::uint32_t> cluster_ends(const std::vector<Box3>& boxes) {
     double area = 0.0;
     for (const Box3& box : boxes) area += half_area(box);
@@ -99,11 +99,11 @@ std::vector<std::uint32_t> cluster_ends(const std::vector<Box3>& boxes) {
     return ends;
 }
 
-/// A block of the order and the ends of its clusters.
+/// A block of triangles in spatial order, and the ends of its clusters.
 struct Block {
     std::span<const std::uint32_t> triangles;
     std::vector<std::uint32_t> ends;
-    std::size_t first = 0;  ///< index of its first cluster
+    std::size_t first = 0;  ///< index of the block's first cluster
 };
 
 std::vector<Block> divide(std::span<const Vec3> vertices, std::span<const Triangle> triangles,

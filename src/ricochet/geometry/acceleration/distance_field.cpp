@@ -20,26 +20,26 @@ constexpr double kMaxAlongAxis = 1024.0;
 
 constexpr std::uint8_t kFar = 255;
 
-/// Budget of marks per triangle. Every grid gets the budget of a million further triangles. Local, because only the
-/// cost depends on it.
+/// Largest number of cell marks per triangle. Every grid may use the marks of a million triangles in addition. Local,
+/// because only the cost depends on it.
 constexpr double kMaxMarks = 16.0;
 
 double cells_along(double extent, double cell) { return std::floor(extent / cell) + 1.0; }
 
 /// Returns the index of the cell that contains a coordinate, in units of cells, out of `count` along an axis. Outside
-/// the grid it is the nearest cell.
+/// the grid this is the nearest cell.
 std::size_t cell_of(double coordinate, std::size_t count) {
     return static_cast<std::size_t>(std::clamp(coordinate, 0.0, static_cast<double>(count - 1)));
 }
 
-/// Extents of triangles, which determine the work for a cell size.
+/// Sums over the extents of triangles, from which the work for a cell size is estimated.
 struct Extents {
     double count = 0.0;
     double sum = 0.0;      ///< in m
     double squares = 0.0;  ///< in m^2
 
-    /// Returns a bound on the marks for a cell size. A triangle needs at most the square of its number of cells along
-    /// an axis.
+    /// Returns an upper bound on the number of cell marks for a cell size. A triangle needs at most the square of its
+    /// number of cells along an axis.
     [[nodiscard]] double marks(double cell) const { return count + 2.0 * sum / cell + squares / (cell * cell); }
 };
 
@@ -88,7 +88,7 @@ DistanceField::DistanceField(std::span<const Vec3> vertices, std::span<const Tri
     spread();
 }
 
-// Rejects cells whose size is near the coordinates' rounding.
+// Leaves the field empty if the size of a cell is near the rounding of coordinates.
 void DistanceField::choose_cells(std::size_t most, const std::function<bool(double cell)>& is_cheap) {
     const Vec3 extent = box_.size();
     const double smallest = kSmallestDistanceCell * max_abs(max(abs(box_.lower), abs(box_.upper)));
@@ -106,7 +106,7 @@ void DistanceField::choose_cells(std::size_t most, const std::function<bool(doub
     }
 }
 
-/// Marks the cells that may contain a triangle, with corners in units of cells. Large triangles are bisected.
+/// Marks the cells that may contain a part of a triangle. corners: in units of cells. Large triangles are bisected.
 void DistanceField::mark(const std::array<Vec3, 3>& corners) {
     Box3 box;
     for (const Vec3& corner : corners) box.include(corner);
@@ -138,8 +138,9 @@ void DistanceField::mark_cells_of(const Box3& box) {
     }
 }
 
-// The two passes of the chessboard distance transform. Each cell becomes at most one more than the neighbours that the
-// pass has visited. Cells in earlier rows come first, then the previous cell in the same row.
+// Performs the two passes of the chessboard distance transform. Each cell becomes at most one more than each neighbour
+// that the pass has already visited. These neighbours are the cells in earlier rows, then the previous cell in the same
+// row.
 void DistanceField::spread() {
     for (std::size_t z = 0; z < count_[2]; ++z) {
         for (std::size_t y = 0; y < count_[1]; ++y) spread_rows(z, y, 1);
@@ -178,8 +179,8 @@ void DistanceField::spread_rows(std::size_t z, std::size_t y, int direction) {
     }
 }
 
-// Chessboard distances are at most Euclidean distances. Along each axis, the closest point of the box is at most as far
-// from a point outside as anything inside the box.
+// A chessboard distance is at most the Euclidean distance. The distance of an outside point to the box along any axis
+// is also a lower bound, because all triangles are inside the box.
 double DistanceField::lower_bound(const Vec3& p) const {
     if (cell_ == 0.0) return 0.0;
     const Vec3 outside = max(box_.lower - p, p - box_.upper);

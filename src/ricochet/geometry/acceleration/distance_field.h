@@ -1,10 +1,10 @@
 /// \file
-/// Distance field: a grid of certain lower bounds on the distance to the nearest triangle.
+/// Distance field: a grid of guaranteed lower bounds on the distance to the nearest triangle.
 ///
 /// Each cell stores its chessboard distance to the nearest cell that contains a triangle (A. Rosenfeld, J. L. Pfaltz,
 /// "Distance Functions on Digital Pictures", Pattern Recognition 1, 1968). Sphere tracing (J. C. Hart, The Visual
-/// Computer 12, 1996) uses it to cross free space. It is needed if curved paths leave the broad phase's margin too
-/// soon.
+/// Computer 12, 1996) uses the field to cross free space. The field is needed if curved paths leave the broad phase's
+/// margin too soon.
 #pragma once
 
 #include <array>
@@ -24,12 +24,14 @@ class DistanceField {
 public:
     /// Makes an empty field, whose lower_bound() is 0 everywhere.
     DistanceField() = default;
-    /// Builds the field with all threads, from triangles with finite corners inside the box. It has about two cells per
-    /// triangle, at least 2^15 for small meshes and at most kMaxCells, of one byte each. The grid is coarser if
+    /// Builds the field with all threads, from triangles with finite corners inside the box. The field has about two
+    /// cells per triangle, at least 2^15 for small meshes and at most kMaxCells. A cell has one byte. The grid is
+    /// coarser if
     /// large triangles overlap.
     DistanceField(std::span<const Vec3> vertices, std::span<const Triangle> triangles, const Box3& box);
 
-    /// Returns a distance in m such that no triangle is nearer to p. It is 0 near triangles. p must be finite.
+    /// Returns a distance, in m, such that no triangle is nearer to p. The distance is 0 near triangles. p must be
+    /// finite.
     [[nodiscard]] double lower_bound(const Vec3& p) const;
     /// Returns the edge length of a cell, in m, or 0 for an empty field. lower_bound() is 0 within about two cells of
     /// the triangles.

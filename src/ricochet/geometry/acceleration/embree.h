@@ -35,8 +35,8 @@ inline void init_context(QueryContext& context, void* user) {
     context.user = user;
 }
 
-/// Returns the user pointer of the query that a callback runs for. Arguments: RTCIntersectFunctionNArguments and
-/// similar types.
+/// Returns the user pointer of the query from which Embree called a callback. Arguments: RTCIntersectFunctionNArguments
+/// and similar types.
 template <class Arguments>
 [[nodiscard]] inline void* user_of(const Arguments* arguments) {
     return reinterpret_cast<const QueryContext*>(arguments->context)->user;
@@ -87,8 +87,8 @@ private:
 using Device = Owned<RTCDevice, rtcReleaseDevice>;
 using Scene = Owned<RTCScene, rtcReleaseScene>;
 
-/// Makes a new device from a configuration in Embree's own language. Geometries and rays need mask -1, because Embree 4
-/// always masks.
+/// Makes a new device. config: a configuration string of Embree. Geometries and rays need mask -1, because Embree 4
+/// always applies masks.
 [[nodiscard]] inline Device make_device(const std::string& config = {}) {
     Device device(rtcNewDevice(config.c_str()));
     if (device.get() != nullptr) return device;

@@ -29,12 +29,12 @@ struct FloatFrame {
     [[nodiscard]] Vec3 apply(const Vec3& p) const { return scale * (p - center); }
 };
 
-/// Distance beyond which segments are not clipped, in units of the float frame (about the scene's half extent). The
-/// clipped point's own rounding could exceed the boxes' padding. Every triangle is a candidate instead. This is rare,
-/// because such a segment must also point at the collider. Local, because only the cost depends on it.
+/// Distance beyond which segments are not clipped, in units of the float frame (about the scene's half extent). Beyond
+/// it, the rounding of the clipped point could exceed the boxes' padding. Every triangle is then a candidate. Such
+/// segments are rare, because they must also point at the collider. Local, because only the cost depends on it.
 constexpr double kFarAway = 0x1p20;
 
-/// Length below which rays have no direction in single precision. Local: a guard against underflow.
+/// Length below which the direction of a ray is undefined in single precision. Local: a guard against underflow.
 constexpr double kShortestRay = 0x1p-120;
 
 float round_down(double value) {
@@ -88,7 +88,7 @@ struct Query {
     double ray_per_fraction = 0.0;  ///< ray length of the whole segment
     double fraction_limit = 1.0;
 
-    /// Visits the triangles of a cluster. Returns the narrowed fraction.
+    /// Visits the triangles of a cluster. Returns the smallest fraction that visits have returned so far.
     double visit_cluster(const TriangleCluster& cluster);
 };
 
@@ -115,16 +115,16 @@ struct PointQuery {
     void* context;
     TriangleBvh::VisitPoint visit;
     const TriangleClusters* clusters;
-    double within;  ///< in m, narrowed so far
+    double within;  ///< in m, the smallest distance returned so far
     double scale;   ///< of the float frame
 
     [[nodiscard]] float radius() const;
 };
 
-/// Distances are compared as squares in single precision, with about 8 roundings. The point itself is rounded to 2^-23
-/// of its largest coordinate. That is within the boxes' padding plus 2^-23 of the distance. 2^-20 covers both. An
-/// infinite radius would also include the empty boxes that Embree keeps. If the point is not far away, everything is
-/// within the largest radius.
+/// Embree compares squared distances in single precision, with about 8 roundings. The point is rounded to 2^-23 of its
+/// largest coordinate. This rounding is at most the boxes' padding plus 2^-23 of the distance. The factor 1 + 2^-20
+/// covers both errors. The radius is limited, because an infinite radius would also include empty boxes that Embree
+/// stores. All triangles are within the limit from a point that is not far away.
 float PointQuery::radius() const {
     // Local: a distance beyond every triangle.
     constexpr double kEverything = 4.0 * kFarAway;
@@ -143,7 +143,8 @@ bool visit_cluster_near_point(RTCPointQueryFunctionArguments* args) {
     return true;
 }
 
-/// Returns the largest distance of a point from a box along an axis, 0 inside. It is at most the distance from the box.
+/// Returns the largest distance of a point from a box along an axis, or 0 inside. This is a lower bound on the distance
+/// from the box.
 double distance_to_box(const Box3& box, const Vec3& p) {
     const Vec3 outside = max(box.lower - p, p - box.upper);
     return std::max({outside.x, outside.y, outside.z, 0.0});
@@ -169,7 +170,7 @@ bool count_memory(void* user, ssize_t bytes, bool /*post*/) {
     return true;
 }
 
-/// Returns the device that hierarchies share. It exists as long as one of them does.
+/// Returns the device that hierarchies share. The device exists as long as one of these hierarchies.
 std::shared_ptr<const embree::Device> shared_device() {
     static std::mutex mutex;
     static std::weak_ptr<const embree::Device> shared;
@@ -203,8 +204,8 @@ struct TriangleBvh::Impl {
     };
 
     Impl() = default;
-    // After memory has run out, Embree's threads may keep the device beyond this object. They must not count memory
-    // then.
+    // After an allocation has failed, Embree's threads may keep the device longer than this object exists. They must
+    // not count memory after that.
     ~Impl() {
         if (device && !shares_device) rtcSetDeviceMemoryMonitorFunction(device->get(), nullptr, nullptr);
     }
@@ -224,7 +225,7 @@ void TriangleBvh::Impl::set_frame() {
     Box3 box;
     for (const TriangleCluster& cluster : *clusters) box.include(cluster.box());
     frame = frame_of(box);
-    // The half extent H and the length L <= 2 sqrt(3) H of a clipped segment are both at least 1 in the float frame.
+    // In the float frame the half extent H is at least 1, and the length of a clipped segment is at most 2 sqrt(3) H.
     const double half_extent = std::max(1.0, frame.scale * 0.5 * max_abs(box.size()));
     slack = kBoxSlack * half_extent / frame.scale + kCandidateSlack * max_abs(max(abs(box.lower), abs(box.upper)));
     const double beside = frame.scale * (margin + slack);
@@ -270,7 +271,8 @@ void TriangleBvh::Impl::build() {
         const double limit = query.visit_cluster((*query.clusters)[args->primID]);
         if (limit >= query.fraction_limit) return;
         query.fraction_limit = limit;
-        // Rounded up generously, because a shorter ray must still reach everything up to the limit.
+        // The new length is rounded up generously, because the shortened ray must still reach all triangles up to the
+        // limit.
         const double ray_length = (limit - query.clip_begin) * query.ray_per_fraction;
         float& tfar = RTCRayN_tfar(RTCRayHitN_RayN(args->rayhit, args->N), args->N, 0);
         tfar = std::min(tfar, round_up(std::max(ray_length, 0.0) * (1.0 + 0x1p-20)));
@@ -366,8 +368,8 @@ void TriangleBvh::Impl::query_near(PointQuery& query, const Vec3& point) const {
 }
 
 void TriangleBvh::query_point(const Vec3& p, double within, void* context, VisitPoint visitor) const {
-    // The clip box exceeds the padded boxes by far more than the rounding of a point that is not far away. The factor
-    // covers the rounding of a far one.
+    // The clip box extends beyond the padded boxes by far more than the rounding of a point that is not far away. The
+    // factor covers the rounding of a point that is far away.
     if (impl_->clusters->empty() || distance_to_box(impl_->clip_box, p) > within * (1.0 + 0x1p-50)) return;
     const FloatFrame& frame = impl_->frame;
     if (max_abs(p - frame.center) * frame.scale > kFarAway) {

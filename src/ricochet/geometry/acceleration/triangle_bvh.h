@@ -2,9 +2,9 @@
 /// Broad phase: finds the triangles that a segment may touch or that are near a point. It is a bounding volume
 /// hierarchy over padded boxes, traversed by Embree in single precision.
 ///
-/// It only proposes candidates: every triangle within the margin of the segment or point (in exact arithmetic), and
-/// some others. No number that Embree computes about triangles is used. Results therefore do not depend on Embree's
-/// version, instruction set or memory layout.
+/// The broad phase only proposes candidates. They include every triangle within the margin of the segment or point, in
+/// exact arithmetic, and some other triangles. The library uses no number that Embree computes about triangles. Results
+/// therefore do not depend on Embree's version, instruction set or memory layout.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ namespace ricochet {
 class TriangleBvh {
 public:
     /// Callback for a candidate. It returns the fraction of the segment, in [0, 1], beyond which triangles no longer
-    /// matter (1: all matter). The smallest value returned so far applies.
+    /// matter (1: all matter). The query uses the smallest fraction returned so far.
     using VisitSegment = double (*)(void* context, std::uint32_t triangle);
 
     using Clusters = std::shared_ptr<const TriangleClusters>;
@@ -33,8 +33,9 @@ public:
     /// `margin` (m, >= 0) is the AABB margin by which paths may leave the segments of queries. Throws RunError if
     /// memory is short.
     TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, double margin);
-    /// Owner of a hierarchy's Embree device. An own device counts the hierarchy's memory. A shared device serves all
-    /// hierarchies that share it. Thousands of hierarchies need it, because Embree makes about 1000 devices at most.
+    /// Ownership of a hierarchy's Embree device. A device of its own counts the memory of the hierarchy. A shared
+    /// device serves several hierarchies. Scenes with thousands of hierarchies need it, because Embree creates at most
+    /// about 1000 devices.
     enum class Device : std::uint8_t { own, shared };
     /// Builds the hierarchy over clusters that several hierarchies share.
     TriangleBvh(Clusters clusters, double margin, Device device = Device::own);
@@ -43,8 +44,8 @@ public:
     TriangleBvh& operator=(TriangleBvh&&) noexcept;
 
     /// Visits every triangle whose distance from the segment [from, to] is at most margin() + slack(), up to the
-    /// narrowed fraction. May visit further triangles. The order is unspecified. Safe from any number of threads. Both
-    /// ends must be finite.
+    /// smallest fraction returned so far. May visit further triangles. The order is unspecified. Any number of threads
+    /// may call it. Both ends must be finite.
     void query_segment(const Vec3& from, const Vec3& to, void* context, VisitSegment visit) const;
 
     /// Calls query_segment() with any callable `double(std::uint32_t triangle)`.
@@ -60,8 +61,8 @@ public:
     /// interval, in fractions of the path. Returns the same value as VisitSegment.
     using VisitTube = double (*)(void* context, std::uint32_t triangle, double enter, double leave);
 
-    /// Visits every triangle that the tube touches, and few others. TriangleCluster::overlaps() decides, four triangles
-    /// at a time. The tube's margin and sagitta together must be at most margin() + slack().
+    /// Visits every triangle that the tube touches, and few other triangles. TriangleCluster::overlaps() selects them,
+    /// four triangles at a time. The tube's margin and sagitta together must be at most margin() + slack().
     void query_tube(const Tube& tube, void* context, VisitTube visit) const;
 
     /// Calls query_tube() with any callable `double(std::uint32_t triangle, double enter, double leave)`.
@@ -79,8 +80,8 @@ public:
     using VisitPoint = double (*)(void* context, std::uint32_t triangle);
 
     /// Visits every triangle whose distance from p is at most within + margin() + slack(), in unspecified order. May
-    /// visit further triangles. `within` (m, >= 0, may be infinite) is replaced by the narrowed distance. Safe from any
-    /// number of threads. p must be finite.
+    /// visit further triangles. The smallest distance returned so far replaces `within` (m, >= 0, may be infinite). Any
+    /// number of threads may call it. p must be finite.
     void query_point(const Vec3& p, double within, void* context, VisitPoint visit) const;
 
     /// Calls query_point() with any callable `double(std::uint32_t triangle)`.
@@ -93,10 +94,11 @@ public:
 
     /// Returns the margin given at construction, in m.
     [[nodiscard]] double margin() const;
-    /// Returns the distance that positions may lie beside the segment, in m (see kBoxSlack).
+    /// Returns the distance, in m, by which positions may be beside the segment in addition to the margin (see
+    /// kBoxSlack).
     [[nodiscard]] double slack() const;
     /// Returns the bytes of the hierarchy, without vertices and triangles. It is 0 with a shared device, which does not
-    /// count them.
+    /// count memory.
     [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
@@ -104,8 +106,9 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Sets the Embree device configuration of hierarchies built later ("isa=sse2"); empty: defaults. Tests use it to show
-/// that no result depends on it. Must not be called while hierarchies are being built.
+/// Sets the Embree device configuration of hierarchies built later ("isa=sse2"); empty: defaults. Tests use this
+/// function to show that no result depends on the configuration. It must not be called while hierarchies are being
+/// built.
 void set_embree_config(std::string config);
 
 /// Returns Embree's name and version, for `--version` and reports.

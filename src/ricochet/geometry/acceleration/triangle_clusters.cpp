@@ -13,8 +13,9 @@ namespace {
 
 constexpr float kExtent = TriangleCluster::kExtent;
 
-/// Bound on the difference between a corner and its quantised position, in units. It is half a unit along each axis,
-/// and one at the largest number, which is not a power of two. Local: an error bound of this arithmetic.
+/// Bound on the difference between a corner and its quantised position, in units of the cluster. Along an axis the
+/// difference is at most half a unit, or one unit at the largest number, which is not a power of two. Local: an error
+/// bound of this arithmetic.
 constexpr double kCornerRounding = 2.0;
 
 /// Rounding of the height above a triangle's plane, times the length of its normal, in single precision. There are
@@ -29,14 +30,15 @@ constexpr float kAreaRounding = 0x1p-18F;
 /// guard against the end of the range of doubles.
 constexpr double kShortestDirection = 1e-290;
 
-/// Rounding of a fraction, which is a quotient of such numbers. Local: an error bound of this arithmetic.
+/// Relative rounding of a fraction of a path, which is a quotient of heights in single precision. Local: an error bound
+/// of this arithmetic.
 constexpr float kFractionRounding = 0x1p-20F;
 
-/// Largest reciprocal length, in 1/m, of a segment that is cut. The squared length of a shorter segment would leave the
-/// range of doubles. Local: a guard against the end of the range of doubles.
+/// Largest reciprocal length, in 1/m, of a segment that is clipped to a cluster. The squared length of a shorter
+/// segment would leave the range of doubles. Local: a guard against the end of the range of doubles.
 constexpr double kMaxPerLength = 1e140;
 
-// Four numbers at once (GCC's and Clang's vector extensions). They fill one register of every 64-bit processor.
+// Vectors of four numbers (vector extensions of GCC and Clang). They fill one register of every 64-bit processor.
 using Quad = float __attribute__((vector_size(16)));
 using Mask = int __attribute__((vector_size(16)));
 
@@ -46,7 +48,8 @@ struct QuadVec {
     Quad z;
 };
 
-// Sign extension by an arithmetic shift takes three instructions on all 64-bit processors.
+// Converts four numbers to single precision. The sign extension by an arithmetic shift takes three instructions on all
+// 64-bit processors.
 Quad loaded(const TriangleCluster::Lanes& lanes) {
     using Numbers = std::int16_t __attribute__((vector_size(16)));
     const auto numbers = std::bit_cast<Numbers>(std::array{std::bit_cast<std::uint64_t>(lanes), std::uint64_t{0}});
@@ -90,9 +93,9 @@ struct LocalSegment {
 /// bound of this arithmetic.
 constexpr double kMarginRounding = 1.0 + 0x1p-20;
 
-/// Returns the part of a path that can be within the margin of a triangle. It lies within twice the extent plus the
-/// margin of the centre. The part is empty (begin > end) if no point is that near. Its sagitta is the path's sagitta
-/// times the square of its share of the path.
+/// Returns the part of a path that can be within the margin of a triangle. All its points are within twice the extent
+/// plus the margin from the cluster's centre. The part is empty (begin > end) if no point is that near. The sagitta of
+/// the part is the path's sagitta times the square of the part's share of the path.
 LocalSegment localized(const TriangleCluster& cluster, const Tube& tube) {
     LocalSegment local{0.0, 1.0, {}, {}, 0.0, {}, {}, 0.0F, 0.0F};
     const Vec3 offset = cluster.center - tube.from;
@@ -123,7 +126,7 @@ struct Projection {
     static constexpr int kUp = (kAxis + 2) % 3;
 };
 
-/// A path projected along itself to a point, relative to a cluster's centre and in its units.
+/// A path projected along its own direction to a point, relative to a cluster's centre and in the cluster's units.
 struct View {
     float right;  ///< of the shear
     float up;
@@ -133,8 +136,8 @@ struct View {
     float size;  ///< upper bound on all numbers here and on differences to the corners
 };
 
-/// Returns the view along the shear, through a point relative to the cluster's centre. The path extends up to `extent`
-/// beyond the point.
+/// Returns the view of a path along the shear. point: of the path, relative to the cluster's centre. The path extends
+/// up to `extent` beyond the point.
 template <int kAxis>
 View view_along(const Vec3& point, const Shear& shear, double margin, float extent) {
     using Axes = Projection<kAxis>;
@@ -158,8 +161,8 @@ struct QuadPoint {
     Quad y;
 };
 
-/// Twice the area of the origin and an edge, and its bound. If the area differs from 0 by more than the bound, the
-/// origin is certainly more than the margin on one side of the edge.
+/// Twice the signed area of the triangle of the origin and an edge, and a bound. If the area differs from 0 by more
+/// than the bound, the origin is certainly more than the margin on one side of the edge.
 struct EdgeSide {
     Quad area;
     Quad bound;
@@ -176,8 +179,9 @@ const std::array<TriangleCluster::Lanes, 3>& coordinates(const TriangleCluster& 
 }
 
 // The projected triangle misses the path's point if the point is certainly beyond one of its edges or outside its box.
-// Winding does not matter. The areas add up to that of the triangle, so beyond an edge one area has a sign that the
-// other two do not have. For a triangle that projects to a line, the box decides.
+// The test does not depend on the winding. The three signed areas add up to the area of the triangle. For a point
+// beyond an edge, one of them therefore has a sign that the other two do not have. For a triangle that projects to a
+// line, the box decides.
 template <int kAxis>
 Mask lanes_of(const TriangleCluster& cluster, const View& view) {
     using Axes = Projection<kAxis>;
@@ -201,8 +205,8 @@ Mask lanes_of(const TriangleCluster& cluster, const View& view) {
     return ~(beyond | outside_box);
 }
 
-/// Returns the lanes that may be near a path along the shear. Straight paths need not be cut first, because the whole
-/// line projects to one point.
+/// Returns the lanes that may be near a path along the shear. Straight paths need not be clipped to the cluster first,
+/// because the whole line projects to one point.
 Mask projected_lanes(const TriangleCluster& cluster, const Vec3& point, const Shear& shear, double margin,
                      float extent) {
     switch (shear.axis) {
@@ -234,7 +238,7 @@ unsigned overlapping_lanes(const TriangleCluster& cluster, const LocalSegment& s
     const Quad none{};
     const Quad lower = min(first, second);
     const Quad upper = max(first, second);
-    // A slope within rounding gives no interval.
+    // If the slope is zero within rounding, no interval can be computed.
     const Mask is_level = abs(slope) <= rounding;
     const Quad enter = is_level ? none : max(lower - kFractionRounding * abs(lower), none);
     const Quad leave = is_level ? none + 1.0F : min(upper + kFractionRounding * abs(upper), none + 1.0F);

@@ -1,5 +1,6 @@
 /// \file
-/// Clusters of four neighbouring triangles, laid out for testing four at once. They are the leaves of the broad phase.
+/// Clusters of four neighbouring triangles, stored so that four triangles are tested at once. The clusters are the
+/// leaves of the broad phase.
 #pragma once
 
 #include <array>
@@ -25,12 +26,12 @@ struct Shear {
     explicit Shear(const Vec3& direction);
 
     int axis = 2;        ///< dominant; the next axis (cyclic) is "right" and the one after that is "up"
-    double right = 0.0;  ///< per length along the axis; at most 1 in magnitude, like `up`
+    double right = 0.0;  ///< shift per unit of length along the axis; at most 1 in magnitude, like `up`
     double up = 0.0;
     double norm = 1.0;  ///< largest factor by which projected distances grow
 };
 
-/// A line or parabola from `start` to `end`, with everything within a margin of it. The path is start + f (end - start)
+/// All points within a margin of a line or parabola from `start` to `end`. The path is start + f (end - start)
 /// - f (1 - f) curve for f in [0, 1].
 class Tube {
 public:
@@ -76,13 +77,13 @@ struct alignas(64) TriangleCluster {
     std::array<Lanes, 3> x;  ///< of the corners, in units from the centre, rounded to the nearest
     std::array<Lanes, 3> y;
     std::array<Lanes, 3> z;
-    std::array<std::uint32_t, 4> triangle;  ///< indices; kNoTriangle at the end, with the corners of the first
+    std::array<std::uint32_t, 4> triangle;  ///< indices; unused lanes have kNoTriangle and the corners of lane 0
     Vec3 center;                            ///< in m
     double per_unit = 1.0;                  ///< in 1/m, a power of two
 
-    /// Returns the bits of the lanes whose triangle may be inside the tube. For these lanes it sets the interval
-    /// outside of which the triangle is certainly not inside. Errs on the side of more candidates. Triangles may be
-    /// degenerate.
+    /// Returns one bit for each lane whose triangle may intersect the tube. For these lanes it sets the interval of the
+    /// path outside of which the tube certainly does not touch the triangle. Undecided triangles count as candidates.
+    /// Triangles may be degenerate.
     [[nodiscard]] unsigned overlaps(const Tube& tube, TubeIntervals& intervals) const;
     /// Returns a box around the triangles, in m.
     [[nodiscard]] Box3 box() const;
@@ -94,7 +95,8 @@ using TriangleClusters = PageVector<TriangleCluster>;
 /// Returns all triangles of a mesh in clusters of neighbours.
 [[nodiscard]] TriangleClusters make_clusters(std::span<const Vec3> vertices, std::span<const Triangle> triangles);
 
-/// Returns clusters of the same triangles after vertices have moved. Queries cost more if neighbours have moved apart.
+/// Returns clusters of the same triangles after vertices have moved. Queries take more time if neighbours have moved
+/// apart.
 [[nodiscard]] TriangleClusters refitted(std::span<const TriangleCluster> clusters, std::span<const Vec3> vertices,
                                         std::span<const Triangle> triangles);
 

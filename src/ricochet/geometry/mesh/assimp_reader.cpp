@@ -1,5 +1,5 @@
-// The only file that uses Assimp. Its results are checked like the results of other readers. The time and memory that
-// Assimp itself uses are not bounded.
+// The only file that uses Assimp. Meshes from Assimp are checked like meshes from other readers. The time and memory
+// that Assimp itself uses are not bounded.
 #include <assimp/config.h>
 #include <assimp/scene.h>
 #include <assimp/version.h>
@@ -17,7 +17,8 @@
 namespace ricochet {
 namespace {
 
-/// File system that opens no files, because a mesh file can name textures, materials and other scenes.
+/// File system that opens no files. Without it Assimp would open textures, materials and other scenes that a mesh file
+/// names.
 class NoFiles final : public Assimp::IOSystem {
 public:
     bool Exists(const char* /*file*/) const override { return false; }

@@ -14,13 +14,13 @@ namespace {
 
 constexpr std::uint32_t kUnknown = std::numeric_limits<std::uint32_t>::max();
 
-/// Parity of the faces at the edges of a shell.
+/// Parity of the number of faces at the edges of a shell.
 struct ShellParity {
     bool is_odd_once = false;  ///< an edge has an odd number of faces if repeated faces count once
     bool is_odd = false;       ///< an edge has an odd number of faces if both sides of a sheet count
 };
 
-/// Returns true if each edge has equally many faces in both directions.
+/// Returns true if equally many faces use each edge in both directions.
 bool is_oriented(const FaceList& faces, const EdgeTable& edges, const std::vector<std::uint32_t>& left_out) {
     const std::vector<std::uint32_t> face_of =
         left_out.empty() ? std::vector<std::uint32_t>{} : faces_of_corners(faces);
@@ -68,7 +68,7 @@ ClosedSurface choose_by_shell(const FaceList& faces, const EdgeTable& edges, std
     return result;
 }
 
-/// Returns the mesh without the triangles of an increasing list.
+/// Returns the mesh without the triangles in left_out, whose indices are in increasing order.
 TriangleMesh without(TriangleMesh mesh, const std::vector<std::uint32_t>& left_out) {
     auto next = left_out.begin();
     std::size_t kept = 0;

@@ -6,9 +6,9 @@
 /// earlier one, in any winding, counts once. The winding of other faces has no influence:
 /// TopologyReport::inconsistent_edges counts the edges at which it changes.
 ///
-/// There is one exception. A shell that is closed only if both sides of its sheets count keeps both: faces that repeat
-/// an earlier one in the opposite winding. Such a sheet is closed, as a body without an inside. A face that repeats an
-/// earlier one in the same winding is a copy, and never counts.
+/// There is one exception. A sheet has two sides if faces repeat earlier ones in the opposite winding. If a shell is
+/// closed only when both sides of its sheets count, both sides count. Such a sheet is closed, as a body without an
+/// inside. A face that repeats an earlier one in the same winding is a copy, and never counts.
 #pragma once
 
 #include <cstdint>
@@ -22,24 +22,26 @@ namespace ricochet {
 /// The faces that count when an inside is distinguished from an outside.
 struct ClosedSurface {
     bool closed = false;
-    bool oriented = false;                ///< closed, and each edge has equally many counted faces in both directions
+    bool oriented = false;                ///< closed, and equally many counted faces use each edge in both directions
     std::vector<std::uint32_t> left_out;  ///< repeated faces that do not count, in increasing order
 };
 
-/// Examines faces with joined equal positions. Time and memory are close to linear in the number of corners.
+/// Examines faces whose vertices at equal positions are already joined. Time and memory are close to linear in the
+/// number of corners.
 [[nodiscard]] ClosedSurface closed_surface(const FaceList& faces, const EdgeTable& edges);
-/// Examines triangles after joining equal positions.
+/// Joins vertices at equal positions and examines the triangles.
 [[nodiscard]] ClosedSurface closed_surface(const TriangleMesh& mesh);
 
 /// Returns the mesh with each corner renamed to the first vertex at its position. Vertices and triangles keep their
 /// indices. Replaced vertices remain in the list, unused.
 [[nodiscard]] TriangleMesh joined_by_position(const TriangleMesh& mesh);
 
-/// Returns the joined mesh without the triangles that closed_surface() leaves out: the boundary of its volume.
+/// Returns the boundary of the mesh's volume: the result of joined_by_position() without the triangles that
+/// closed_surface() leaves out.
 [[nodiscard]] TriangleMesh counted_surface(const TriangleMesh& mesh);
 
-/// Returns the mesh without the triangles that repeat an earlier one in the same winding. Equal positions must be
-/// joined.
+/// Returns the mesh without the triangles that repeat an earlier one in the same winding. Vertices at equal positions
+/// must be joined before.
 [[nodiscard]] TriangleMesh without_copies(const TriangleMesh& mesh);
 
 }  // namespace ricochet

@@ -12,14 +12,15 @@ namespace {
 constexpr std::uint32_t kLeafSize = 8;
 constexpr std::uint32_t kNoCorner = std::numeric_limits<std::uint32_t>::max();
 
-// Exact test: if the box's leftmost corner is strictly right of the line from a to b, so is every point of the box.
+// Returns true if the whole box is strictly right of the line from a to b. The exact test of the box's leftmost corner,
+// seen along the line, decides.
 bool is_right_of(const Point2& lower, const Point2& upper, const Point2& a, const Point2& b) {
     const Point2 leftmost{b.v < a.v ? upper.u : lower.u, b.u > a.u ? upper.v : lower.v};
     return orient2d(a, b, leftmost) < 0;
 }
 
-// Returns the exact orientation of the outline. It is the turn at the lowest-left corner, which is convex in every
-// simple polygon. If the outline reverses its direction there, the sum of areas decides.
+// Returns the exact orientation of the outline. It is the turn at the leftmost (then lowest) corner, which is convex in
+// every simple polygon. If the outline reverses its direction at this corner, the sum of areas decides.
 int orientation(const std::vector<Point2>& p) {
     const auto lowest = std::min_element(
         p.begin(), p.end(), [](const Point2& a, const Point2& b) { return std::tie(a.u, a.v) < std::tie(b.u, b.v); });
@@ -137,8 +138,9 @@ int EarClipper::turn(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
 
 int EarClipper::turn_at(std::uint32_t corner) const { return turn(previous_[corner], corner, next_[corner]); }
 
-// Ears are clipped in queue order. Neighbours of a clipped corner wait for a whole round, which avoids thin triangles.
-// Only the neighbours of a clipped ear can become ears or cease to be ears (Meisters).
+// Ears are clipped in queue order. The neighbours of a clipped corner are appended to the queue, and so wait for a
+// whole round. This avoids thin triangles. Clipping an ear can change only whether its two neighbours are ears
+// (Meisters).
 void EarClipper::clip_all(Strictness strictness, std::vector<Triangle>& triangles) {
     queue_.clear();
     is_queued_.assign(points_.size(), 0);
@@ -183,7 +185,7 @@ bool EarClipper::is_ear(std::uint32_t corner, Strictness strictness) const {
            fits_between_neighbours(corner, strictness) && is_free_of_corners(corner, strictness);
 }
 
-// The diagonal must leave both of its ends inside the outline. A convex end must stay convex after the ear is removed.
+// The diagonal must be inside the outline at both of its ends. A convex end must stay convex after the ear is removed.
 bool EarClipper::fits_between_neighbours(std::uint32_t corner, Strictness strictness) const {
     const std::uint32_t before = previous_[corner];
     const std::uint32_t after = next_[corner];
@@ -192,7 +194,8 @@ bool EarClipper::fits_between_neighbours(std::uint32_t corner, Strictness strict
     return turn_at(after) <= 0 || turn(before, after, next_[after]) >= least;
 }
 
-// Corners that coincide with a corner of the ear are further visits of the outline to it (the ends of a bridge).
+// Corners that coincide with a corner of the ear are ignored. They occur if the outline visits a position several times
+// (the ends of a bridge).
 bool EarClipper::is_free_of_corners(std::uint32_t corner, Strictness strictness) const {
     const Point2& a = points_[previous_[corner]];
     const Point2& b = points_[corner];
@@ -205,7 +208,7 @@ bool EarClipper::is_free_of_corners(std::uint32_t corner, Strictness strictness)
     });
 }
 
-// Any triangulation of an outline covers the area that it winds around, so a fan suffices.
+// Any triangulation of an outline covers the area that the outline winds around, so a fan suffices.
 void EarClipper::fan_the_rest(std::vector<Triangle>& triangles) {
     const std::uint32_t hub = any_corner_;
     std::uint32_t corner = next_[hub];

@@ -21,7 +21,7 @@ public:
     void remove(std::uint32_t member);
 
     /// Calls visit(member) for the members in boxes that the closed counter-clockwise triangle (a, b, c) touches, until
-    /// it returns true. May visit other members too. Returns true if a call did.
+    /// visit returns true. May visit other members too. Returns true if a call of visit returned true.
     template <typename Visit>
     bool any_near_triangle(const Point2& a, const Point2& b, const Point2& c, Visit&& visit) const {
         if (nodes_.empty()) return false;
@@ -48,8 +48,8 @@ private:
         Point2 lower;
         Point2 upper;
         std::uint32_t begin = 0;        // leaf: members_[begin, begin + members)
-        std::uint32_t members = 0;      // that remain below this node
-        std::uint32_t first_child = 0;  // index of the first child, which the other one follows; 0 for a leaf
+        std::uint32_t members = 0;      // number of members that remain below this node
+        std::uint32_t first_child = 0;  // index of the first child, followed by the second one; 0 for a leaf
         std::uint32_t parent = 0;
     };
 
@@ -65,13 +65,13 @@ private:
 };
 
 /// Cuts polygons by ear clipping, with exact signs. A corner is tested once at the start and again when one of its
-/// neighbours is clipped. The test uses the reflex corners near its triangle, which a tree finds, so the time is close
-/// to linear. Memory is reused from one polygon to the next.
+/// neighbours is clipped. The test uses only the reflex corners near the triangle of the corner, which a tree finds, so
+/// the time is close to linear. Memory is reused from one polygon to the next.
 class EarClipper {
 public:
     /// Appends n - 2 triangles of indices into `points`, which has n >= 3 corners in either orientation. Neighbours
-    /// must be different corners, but may coincide. The triangles have the outline's winding. Returns false if the
-    /// outline crosses itself. The triangles then cover it, but overlap.
+    /// must be different corners, but may have equal positions. The triangles have the outline's winding. Returns false
+    /// if the outline crosses itself. The triangles then cover the outline, but overlap.
     [[nodiscard]] bool clip(const std::vector<Point2>& points, std::vector<Triangle>& triangles);
 
 private:
@@ -93,7 +93,7 @@ private:
     std::vector<std::uint32_t> next_;
     std::vector<std::uint32_t> previous_;
     std::vector<char> is_reflex_;  // corners that an ear must not contain
-    std::vector<char> is_queued_;  // corners that were an ear when last tested
+    std::vector<char> is_queued_;  // corners that were ears at their last test
     std::vector<std::uint32_t> queue_;
     std::uint32_t remaining_ = 0;
     std::uint32_t any_corner_ = 0;  // a corner that is not clipped yet

@@ -34,7 +34,7 @@ std::uint32_t FaceGroupTable::group_number(PolygonMesh& mesh, const FaceGroup& g
     return entry->second;
 }
 
-// Every name is stored once, even if it belongs to many combinations, so that memory stays bounded by the file.
+// Every name is stored once, even if it belongs to many combinations, so that memory is bounded by the file's size.
 std::uint32_t FaceGroupTable::name_number(PolygonMesh& mesh, const std::string& name) {
     const auto [entry, is_new] = numbers_.try_emplace(name, static_cast<std::uint32_t>(mesh.group_names.size()));
     if (is_new) mesh.group_names.push_back(name);

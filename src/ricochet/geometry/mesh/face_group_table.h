@@ -10,7 +10,7 @@
 
 namespace ricochet {
 
-/// The names that apply to the faces that follow. A missing name is empty.
+/// The names that apply to the next faces. A missing name is empty.
 struct FaceNames {
     std::string material;
     std::string group;
@@ -21,12 +21,12 @@ struct FaceNames {
 /// found, all earlier faces get the empty names.
 class FaceGroupTable {
 public:
-    /// Returns the current names, to change them for the faces that follow.
+    /// Returns the current names, so that the caller can change them for the next faces.
     [[nodiscard]] FaceNames& names() {
         is_known_ = false;
         return current_;
     }
-    /// Assigns the current names to the face that was closed last.
+    /// Assigns the current names to the last face of the mesh.
     void record(PolygonMesh& mesh);
 
 private:

@@ -7,7 +7,7 @@
 namespace ricochet {
 namespace {
 
-/// Sums the triangles of the names of one kind.
+/// Counts the triangles of each name of one kind.
 class NameCounts {
 public:
     explicit NameCounts(FaceNameKind kind) : kind_(kind) {}
@@ -25,7 +25,7 @@ private:
     std::map<std::string_view, std::size_t> slots_;  // index in names_; the texts outlive this object
 };
 
-// Adds a line of `g` and its words. A word that occurs twice in the line counts once.
+// Adds the whole line of a `g` statement, and each of its words. A word that occurs twice in the line counts once.
 void add_group(NameCounts& counts, std::string_view line, std::size_t triangles) {
     counts.add(line, triangles);
     std::set<std::string_view> seen = {line};
@@ -55,7 +55,8 @@ std::vector<NamedTriangles> named_triangles(const ImportedMesh& imported) {
 
     std::vector<NamedTriangles> all;
     const auto add_kind = [&](FaceNameKind kind, std::uint32_t FaceGroup::*number) {
-        // Summed by number first, because a long line of words may belong to many combinations.
+        // Triangles are first summed by the number of the name, because a long line of words may belong to many
+        // combinations.
         std::vector<std::size_t> of_name(mesh.group_names.size(), 0);
         for (std::size_t i = 0; i < mesh.groups.size(); ++i) of_name[mesh.groups[i].*number] += of_group[i];
         NameCounts counts(kind);

@@ -23,16 +23,16 @@ enum class FaceNameKind : std::uint8_t {
 struct NamedTriangles {
     FaceNameKind kind = FaceNameKind::material;
     std::string name;
-    std::size_t triangles = 0;  ///< that have it, regardless of their other names
+    std::size_t triangles = 0;  ///< number of triangles with this name, regardless of their other names
 };
 
 /// Returns the words of a text, which are separated by blanks.
 [[nodiscard]] std::vector<std::string_view> words_of(std::string_view text);
 
 /// Returns every name that triangles of a mesh have: materials, groups, then objects. Each kind is in the order in
-/// which the file first uses the names. A group is a whole line. If it has several words, each word follows it as a
-/// further name. Requires a mesh that was read with MeshContent::everything. Time is close to linear in the number of
-/// triangles and the length of the names.
+/// which the file first uses the names. A group is a whole line. If the line has several words, each word follows the
+/// line as a further name. Requires a mesh that was read with MeshContent::everything. Time is close to linear in the
+/// number of triangles and the length of the names.
 [[nodiscard]] std::vector<NamedTriangles> named_triangles(const ImportedMesh& imported);
 
 }  // namespace ricochet

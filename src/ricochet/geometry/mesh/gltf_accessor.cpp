@@ -12,7 +12,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "glTF is copied from little-endian bytes");
 
-// Numbers of component types in the file, which are the OpenGL constants.
+// Numbers of component types in the file. They are the OpenGL constants.
 constexpr std::uint64_t kInt8 = 5120;
 constexpr std::uint64_t kUint8 = 5121;
 constexpr std::uint64_t kInt16 = 5122;
@@ -58,7 +58,7 @@ double integer_at(const char* at, bool is_normalized) {
     return is_normalized ? std::max(value / std::numeric_limits<Value>::max(), -1.0) : value;
 }
 
-// Returns the bytes from an offset on, after checking that they suffice for `count` elements.
+// Returns the bytes from the byteOffset on. Checks that they suffice for `count` elements.
 std::string_view require_bytes(const GltfLocation& location, std::string_view view, std::uint64_t count,
                                std::size_t stride, std::size_t element) {
     const std::uint64_t offset = location.whole_number("byteOffset", 0);

@@ -72,8 +72,8 @@ bool is_within(const fs::path& path, const fs::path& folder) {
     return rest == folder.end();
 }
 
-// Returns the path of the file that a buffer names. It must be beside the glTF file or in a folder below, also after
-// following links.
+// Returns the path of the file that a buffer names. The file must be beside the glTF file or in a subfolder, also after
+// links have been resolved.
 fs::path file_below(const GltfLocation& uri, const fs::path& folder) {
     const std::string name = without_percents(uri, uri.text());
     const fs::path path(name);
@@ -120,7 +120,7 @@ GltfBuffers::View GltfBuffers::view(const GltfLocation& owner, std::string_view 
     }
     const std::uint64_t stride = view.whole_number("byteStride", 0);
     constexpr std::uint64_t kLargestStride = 252;
-    // Several exporters write 0 for elements without gaps.
+    // A stride of 0 is accepted, because several exporters write it for elements without gaps.
     if (stride != 0 && (stride < 4 || stride > kLargestStride)) {
         view.fail(fmt::format("found the byteStride {}, expected 4 to {}, or 0 for none", stride, kLargestStride));
     }

@@ -17,10 +17,10 @@
 
 namespace ricochet {
 
-/// Sources of buffers other than the JSON.
+/// Sources of buffers outside the JSON.
 struct GltfSurroundings {
     std::optional<std::string_view> chunk;        ///< the binary chunk of a GLB file
-    std::optional<std::filesystem::path> folder;  ///< of files that buffers name; nullopt: such files are refused
+    std::optional<std::filesystem::path> folder;  ///< of files that buffers name; nullopt: refuses such files
 };
 
 /// Bytes of buffers. Each buffer is fetched once, at its first use.
@@ -39,7 +39,7 @@ public:
 
     /// Returns the files that were read, sorted by name.
     [[nodiscard]] std::vector<std::filesystem::path> files() const;
-    /// Returns the total size of these files.
+    /// Returns the total size of files(), in bytes.
     [[nodiscard]] std::size_t bytes_of_files() const;
 
 private:
@@ -50,8 +50,8 @@ private:
     GltfList buffers_;
     GltfList views_;
     GltfSurroundings surroundings_;
-    std::map<std::size_t, std::string_view> known_;  ///< of buffers by index
-    std::map<std::size_t, std::string> decoded_;     ///< of data URIs by index of the buffer
+    std::map<std::size_t, std::string_view> known_;  ///< bytes of buffers, by index
+    std::map<std::size_t, std::string> decoded_;     ///< bytes of data URIs, by index of the buffer
     std::map<std::filesystem::path, FileBytes> read_;
 };
 
@@ -64,10 +64,10 @@ public:
     [[nodiscard]] static GltfAccessor of_indices(const GltfLocation& accessor, GltfBuffers& buffers);
 
     [[nodiscard]] std::size_t size() const { return count_; }
-    /// Returns the point as in the file, finite or not.
+    /// Returns the point with the values in the file, which may not be finite.
     [[nodiscard]] Vec3 point(std::size_t i) const;
     [[nodiscard]] std::uint32_t index(std::size_t i) const;
-    /// Returns the largest value of an index's type, which means no vertex.
+    /// Returns the largest value of the index type, which stands for "no vertex".
     [[nodiscard]] std::uint32_t no_index() const;
 
 private:

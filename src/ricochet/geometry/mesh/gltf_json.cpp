@@ -16,8 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Maximum number of stored values. A file with this many values, besides the numbers in its buffers, would have a
-/// million nodes.
+/// Maximum number of stored values. A file with this many values outside its buffers has about a million nodes.
 constexpr std::size_t kMostGltfValues = 4'000'000;
 
 /// Top-level keys of a glTF file that describe a mesh.
@@ -25,7 +24,7 @@ constexpr std::array<std::string_view, 11> kTopKeys = {
     "asset", "accessors", "buffers", "bufferViews",    "materials",         "meshes",
     "nodes", "scene",     "scenes",  "extensionsUsed", "extensionsRequired"};
 
-/// Keys inside these that a mesh does not need. Textures of materials are the largest part.
+/// Keys below the top level that a mesh does not need. Textures of materials are the largest part.
 constexpr std::array<std::string_view, 13> kLeftOut = {"extras",
                                                        "extensions",
                                                        "copyright",
@@ -45,8 +44,8 @@ bool contains(const List& list, std::string_view word) {
     return std::find(list.begin(), list.end(), word) != list.end();
 }
 
-// Builds the tree of stored values. The open containers are the last elements of their parents, so pointers to them
-// stay valid.
+// Builds the tree of stored values. Each open container is the last element of its parent, so pointers to open
+// containers stay valid.
 class GltfTreeBuilder final : public nlohmann::json_sax<Json> {
 public:
     explicit GltfTreeBuilder(const MeshSource& source) : source_(source) {}
@@ -72,7 +71,7 @@ public:
         if (is_top) is_in_nodes_ = name == "nodes";
         const bool is_kept = is_top ? contains(kTopKeys, name) : is_kept_below(name);
         skips_next_ = !is_kept;
-        // For animations only their existence matters.
+        // Only the existence of animations matters, so their content is not stored.
         if (is_kept || (is_top && name == "animations"))
             std::get<GltfValue::Object>(open_.back()->value).push_back({std::move(name), {}});
         return true;
@@ -89,7 +88,7 @@ public:
     GltfValue take() { return std::move(root_); }
 
 private:
-    // For a node's extensions only KHR_node_visibility matters.
+    // The only extension of a node that is stored is KHR_node_visibility.
     [[nodiscard]] bool is_kept_below(std::string_view name) const {
         constexpr std::size_t kInNode = 3;  // nodes[0] is the third open container
         if (is_in_nodes_ && open_.size() == kInNode && name == "extensions") return true;
@@ -215,13 +214,13 @@ GltfLocation GltfList::operator[](std::size_t i) const {
 }
 
 std::uint64_t GltfLocation::whole_number() const {
-    // Larger offsets and counts exceed any file. Sums of two numbers below this limit stay in range. Local: a limit of
-    // input values.
+    // Larger offsets and counts exceed any file. Sums of two numbers below this limit stay in the range of integers.
+    // Local: a limit of input values.
     constexpr double kLargest = 9007199254740992.0;
     if (const auto* whole = std::get_if<std::uint64_t>(&value_->value)) {
         if (*whole <= static_cast<std::uint64_t>(kLargest)) return *whole;
     } else if (const auto* number = std::get_if<double>(&value_->value)) {
-        // Some programs write 3.0.
+        // Some programs write whole numbers like 3.0.
         if (*number >= 0.0 && *number <= kLargest && *number == std::floor(*number)) {
             return static_cast<std::uint64_t>(*number);
         }

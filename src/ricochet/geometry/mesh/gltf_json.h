@@ -1,5 +1,6 @@
 /// \file
-/// The part of a glTF file's JSON that describes triangles, with strict access to it. Private to the glTF reader.
+/// The part of a glTF file's JSON that describes triangles, with checked access to its values. Private to the glTF
+/// reader.
 ///
 /// Data that a mesh does not need (images, animations, cameras, `extras`, extensions of materials) must be valid JSON,
 /// but is not stored.
@@ -17,7 +18,7 @@
 
 namespace ricochet {
 
-/// Extension that hides nodes. It is the only one stored from `extensions`.
+/// Extension that hides nodes. It is the only extension that is stored.
 inline constexpr std::string_view kGltfVisibility = "KHR_node_visibility";
 
 struct GltfMember;
@@ -40,7 +41,7 @@ struct GltfMember {
 };
 
 /// Parses the JSON of a glTF file. Throws InputError if the text is not JSON or not an object, or if a key appears
-/// twice. Throws also if more than 4 million values would be stored.
+/// twice. It also throws if more than 4 million values would be stored.
 [[nodiscard]] GltfValue parse_gltf_json(const MeshSource& source, std::string_view text);
 
 class GltfLocation;
@@ -62,8 +63,8 @@ private:
 };
 
 /// A value that knows its location in the JSON, such as `accessors[3].count`, for messages. Each access checks that the
-/// requested value exists and has the right kind. Otherwise it throws an InputError that states the found value. Valid
-/// as long as the source and the document exist.
+/// requested value exists and has the right kind. If not, it throws an InputError that states the found value. Valid as
+/// long as the source and the document exist.
 class GltfLocation {
 public:
     GltfLocation(const MeshSource& source, const GltfValue& value, std::string path)
@@ -78,11 +79,11 @@ public:
     /// Returns the items of the list under a key, or an empty list if the key is missing.
     [[nodiscard]] GltfList items(std::string_view key) const;
 
-    /// The next functions read this value itself.
+    /// The next three functions read this value itself.
     [[nodiscard]] std::uint64_t whole_number() const;
     [[nodiscard]] double number() const;
     [[nodiscard]] const std::string& text() const;
-    /// Returns a whole number that must be below `count`. `what` names the elements that it refers to, for messages.
+    /// Returns a whole number that must be below `count`. `what` names the indexed elements in messages.
     [[nodiscard]] std::uint32_t index_below(std::size_t count, std::string_view what) const;
 
     // The next functions read the values of optional keys.

@@ -16,13 +16,13 @@ namespace {
 constexpr std::string_view kQuantization = "KHR_mesh_quantization";
 constexpr std::string_view kInstancing = "EXT_mesh_gpu_instancing";
 
-// Extensions that a file may require and that do not affect triangles.
+// Prefixes of extensions that a file may require, but that do not affect triangles.
 constexpr std::array<std::string_view, 8> kHarmless = {
     "KHR_materials_",      "KHR_texture_",    "EXT_texture_",          "MSFT_texture_",
     "KHR_lights_punctual", "KHR_xmp_json_ld", "KHR_animation_pointer", kGltfVisibility};
 
-// Applies a rotation. It is divided by the square of the quaternion's length, so quarter turns are exact for any
-// rounding of the square root of 1/2.
+// Applies the rotation of a quaternion. The terms are divided by the square of the quaternion's length, so quarter
+// turns are exact for any rounding of the square root of 1/2.
 void turn(AffineMap& map, const GltfLocation& node, const std::vector<double>& q) {
     const double x = q[0];
     const double y = q[1];
@@ -95,7 +95,7 @@ private:
         std::optional<std::uint32_t> named;  // the node itself, or the nearest ancestor that has a name
     };
 
-    // The nodes reachable from the roots form a tree if every node has at most one parent and roots have none.
+    // The nodes reachable from the roots form trees if every node has at most one parent and the roots have none.
     void find_parents() {
         for (std::size_t n = 0; n < nodes_.size(); ++n) {
             const GltfList children = nodes_[n].items("children");
@@ -120,7 +120,7 @@ private:
         }
     }
 
-    // Visits parents before children without recursion, because a file may nest its nodes arbitrarily deep.
+    // Visits parents before children without recursion, because a file may nest its nodes to any depth.
     void walk_from(std::uint32_t root) {
         enter(root, {}, std::nullopt);
         while (!open_.empty()) {
@@ -156,7 +156,7 @@ private:
         return !node.at("extensions").at(kGltfVisibility).flag("visible", true);
     }
 
-    // Refuses meshes that are posed by anything other than their node.
+    // Refuses meshes that a skin or morph targets deform.
     static void require_rigid(const GltfLocation& node, const GltfLocation& mesh) {
         if (node.has("skin")) {
             node.fail(

@@ -22,11 +22,11 @@ struct PlacedGltfMesh {
 /// The visible content of a file's nodes.
 struct GltfScenery {
     std::vector<PlacedGltfMesh> meshes;
-    std::size_t hidden_nodes = 0;  ///< nodes hidden by KHR_node_visibility, left out with all their descendants
+    std::size_t hidden_nodes = 0;  ///< number of nodes hidden by KHR_node_visibility; their descendants are hidden too
 };
 
-/// Returns the meshes of the scene that the file shows (of all nodes if it has no scenes), parents before children.
-/// Throws InputError if the nodes are not a tree, or if a mesh is posed by joints or morph targets.
+/// Returns the meshes of the scene that the file shows, parents before children. Without scenes, returns the meshes of
+/// all nodes. Throws InputError if the nodes are not a tree, or if a mesh is posed by joints or morph targets.
 [[nodiscard]] GltfScenery placed_gltf_meshes(const GltfLocation& document);
 
 /// Throws InputError if the file requires an unsupported extension that changes the position of triangles.

@@ -33,7 +33,7 @@ std::uint32_t number_at(const MeshSource& source, std::size_t byte) {
     return value;
 }
 
-// A GLB file has a header of 12 bytes, then chunks. The length and the kind of each chunk precede it.
+// A GLB file has a header of 12 bytes, then chunks. The length and the kind of a chunk precede its data.
 GltfParts parts_of_glb(const MeshSource& source) {
     constexpr std::size_t kHeader = 12;
     constexpr std::size_t kChunkHeader = 8;
@@ -119,7 +119,7 @@ public:
     }
 
 private:
-    // Corners are counted first, so that memory stays bounded by the file even if its nodes show one mesh many times.
+    // Corners are counted first, so that memory is bounded by the file's size even if nodes show one mesh many times.
     void reserve(const std::vector<PlacedGltfMesh>& placed) {
         constexpr std::size_t kCornersPerByte = 16;
         std::map<std::uint32_t, std::uint64_t> counts;
@@ -143,7 +143,7 @@ private:
         builder_.reserve(corners);
     }
 
-    // A primitive that draws nothing counts too, because it takes time.
+    // A primitive that draws nothing also counts as one corner, because it takes time.
     std::uint64_t corners_in(const GltfLocation& mesh) {
         std::uint64_t corners = 0;
         const GltfList primitives = mesh.items("primitives");
@@ -208,7 +208,7 @@ private:
             if (indices != nullptr) {
                 for (std::size_t& corner : corners) corner = index_in(primitive, *indices, corner, points.size());
             }
-            // Triangles that name a point twice only change the direction of a strip.
+            // In a strip, a triangle that repeats a point only changes the strip's direction.
             const bool repeats = corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
             if (repeats && drawing == Drawing::strip) continue;
             for (const std::size_t corner : corners) {

@@ -6,7 +6,8 @@
 namespace ricochet {
 namespace {
 
-/// Returns the moments of a body that is centred at the origin and then mapped.
+/// Returns the moments of a body that is centred at the origin and then transformed by a map. volume: after the map.
+/// second: before the map, times the determinant.
 MassMoments placed(double volume, const SymmetricMatrix& second, const AffineMap& map) {
     const Vec3& center = map.translation;
     return {volume, volume * center, congruent(map, second) + volume * outer_product(center)};
@@ -21,7 +22,7 @@ SymmetricMatrix MassMoments::inertia() const {
 
 MassMoments moments_of(const TriangleMesh& mesh) {
     if (mesh.vertices.empty()) return {};
-    // The tetrahedra start at a point of the mesh, which minimises cancellation.
+    // All tetrahedra have a vertex of the mesh as apex, which reduces cancellation.
     const Vec3 apex = mesh.vertices.front();
     double volume = 0.0;
     Vec3 first;

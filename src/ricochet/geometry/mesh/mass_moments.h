@@ -12,8 +12,8 @@ namespace ricochet {
 /// Integrals over a body. The integrals of bodies that do not overlap can be added.
 struct MassMoments {
     double volume = 0.0;     ///< in m^3
-    Vec3 first;              ///< of the position, in m^4
-    SymmetricMatrix second;  ///< of x x^T, in m^5
+    Vec3 first;              ///< integral of the position, in m^4
+    SymmetricMatrix second;  ///< integral of x x^T, in m^5
 
     [[nodiscard]] Vec3 center() const { return first / volume; }
     /// Returns the inertia about the centre, divided by the density, in m^5.
@@ -24,10 +24,10 @@ struct MassMoments {
     }
 };
 
-/// Returns the moments of the volume inside a closed mesh whose triangles are counter-clockwise seen from outside. They
-/// are exact for the polyhedron, up to rounding. All are negative for a mesh that is wound inward. Method: sums over
-/// the tetrahedra from one point to all triangles. Source of their moments: S. Lien, J. T. Kajiya, IEEE Computer
-/// Graphics and Applications 4 (1984).
+/// Returns the moments of the volume inside a closed mesh whose triangles are counter-clockwise seen from outside. The
+/// moments are exact for the polyhedron, up to rounding. All moments are negative for a mesh that is wound inward.
+/// Method: sums over the tetrahedra between one point and each triangle. Source of their moments: S. Lien, J. T.
+/// Kajiya, IEEE Computer Graphics and Applications 4 (1984).
 [[nodiscard]] MassMoments moments_of(const TriangleMesh& mesh);
 /// Returns the moments of the unit ball under a map.
 [[nodiscard]] MassMoments moments_of_ball(const AffineMap& world_from_unit);

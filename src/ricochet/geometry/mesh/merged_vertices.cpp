@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::uint32_t kUnknown = std::numeric_limits<std::uint32_t>::max();
 
-/// Kept vertices in cells as wide as the tolerance. They are more than the tolerance apart, so a cell has few of them.
+/// Grid of kept vertices, with cells as wide as the tolerance. Kept vertices are more than the tolerance apart, so a
+/// cell contains few of them.
 class VertexGrid {
 public:
     VertexGrid(double tolerance, std::vector<Vec3>& kept) : tolerance_(tolerance), kept_(kept) {}

@@ -14,25 +14,27 @@ namespace {
 /// Local, because only the cost depends on it.
 constexpr double kMaxCells = 1024.0;  // along either axis; a million columns suffice for any mesh
 
-/// Entries in the column lists: per triangle, and for every mesh. With fewer entries, the columns of ordinary meshes
-/// would be too wide. With more, large triangles on top of each other would take too much memory.
+/// Largest number of entries in the column lists: per triangle, and in addition for every mesh. With fewer entries, the
+/// columns of ordinary meshes would be too wide. With more, large triangles on top of each other would take too much
+/// memory.
 constexpr std::size_t kEntriesPerTriangle = 64;
 constexpr std::size_t kEntries = std::size_t{1} << 20;
 
 Point2 flat(const Vec3& p) { return {p.x, p.y}; }
 
-// Returns true if the horizontal ray to the right of the moved point p crosses the edge from a to b, seen from above.
+// Returns true if the horizontal ray from the moved point p to the right crosses the edge from a to b, seen from above.
 bool crosses_right(const Vec3& a, const Vec3& b, const Vec3& p) {
-    const bool a_is_above = a.y > p.y;  // p counts as moved up, so points at its level are below it
+    const bool a_is_above = a.y > p.y;  // p is moved up, so a point with equal y is below p
     if (a_is_above == (b.y > p.y)) return false;
     const Vec3& low = a_is_above ? b : a;
     const Vec3& high = a_is_above ? a : b;
     int turn = orient2d(flat(low), flat(high), flat(p));  // +1: p is on the left
     if (turn == 0) turn = high.x > low.x ? 1 : (high.x < low.x ? -1 : 0);
-    return turn > 0;  // on a vertical edge, the move to the right decides: p is not on the left
+    return turn > 0;  // on an edge along y, p is moved to the right of it
 }
 
-// Returns +1 if the upward ray from the moved point crosses the triangle along its normal, -1 if against it, else 0.
+// Returns +1 if the upward ray from the moved point crosses the triangle along its normal, -1 if against the normal,
+// else 0.
 int crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
     const bool covers = crosses_right(a, b, p) ^ crosses_right(b, c, p) ^ crosses_right(c, a, p);
     if (!covers) return 0;
@@ -91,7 +93,8 @@ std::size_t MeshInterior::entries(const std::vector<std::uint32_t>& left_out) co
     return count;
 }
 
-// The index is monotone in the value, so a point's column is within the columns of every triangle above or below it.
+// The index is monotone in the value. The column of a point is therefore among the columns of every triangle above or
+// below the point.
 std::size_t MeshInterior::cell_of(double value, int axis) const {
     const double width = box_.upper[axis] - box_.lower[axis];
     if (!(width > 0.0)) return 0;

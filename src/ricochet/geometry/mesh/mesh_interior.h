@@ -1,10 +1,10 @@
 /// \file
 /// Exact test whether points are inside a closed mesh, for many points of one mesh.
 ///
-/// The test counts the crossings of the upward ray (along z) from the point. The point counts as moved by an
-/// infinitesimal amount along y and a still smaller one along x. The ray therefore hits neither edges nor vertices
-/// (symbolic perturbation: H. Edelsbrunner, E. P. Muecke, "Simulation of Simplicity", ACM Transactions on Graphics 9,
-/// 1990). Signs come from the exact predicates.
+/// The test counts the crossings of the upward ray (along z) from the point. The point is treated as moved by an
+/// infinitesimal amount along y and by a still smaller amount along x. The ray therefore hits neither edges nor
+/// vertices (symbolic perturbation: H. Edelsbrunner, E. P. Muecke, "Simulation of Simplicity", ACM Transactions on
+/// Graphics 9, 1990). Signs come from the exact predicates.
 #pragma once
 
 #include <array>
@@ -20,17 +20,17 @@
 
 namespace ricochet {
 
-/// Returns true if the mesh separates an inside from an outside. See closed_surface.h.
+/// Returns true if the mesh separates an inside from an outside, as defined in closed_surface.h.
 [[nodiscard]] bool is_closed(const TriangleMesh& mesh);
 
 /// The interior of a closed mesh (closed_surface.h). Thread-safe.
 class MeshInterior {
 public:
     explicit MeshInterior(std::shared_ptr<const TriangleMesh> mesh);
-    /// Uses a known set of triangles to leave out: ClosedSurface::left_out of the mesh.
+    /// Uses known triangles to leave out, instead of computing them. left_out: ClosedSurface::left_out of the mesh.
     MeshInterior(std::shared_ptr<const TriangleMesh> mesh, const std::vector<std::uint32_t>& left_out);
 
-    /// Returns true if the point is inside. Exact. A point on the surface itself is not inside.
+    /// Returns true if the point is inside, exactly. A point on the surface itself is not inside.
     [[nodiscard]] bool contains(const Vec3& point, InsideRule rule = InsideRule::parity) const;
     /// Returns the winding number at a finite point within box(), without the triangles of one shell. `shell_of` is the
     /// shell of each triangle. The result is exact for the infinitesimally moved point.

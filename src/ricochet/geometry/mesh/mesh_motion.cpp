@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Smallest distance of two keys, as a fraction of the larger of their times. Local: a limit of input values.
+/// Smallest time between two keys, as a fraction of the larger magnitude of their times. Local: a limit of input
+/// values.
 constexpr double kLeastSpacing = 0x1p-40;
 
 [[noreturn]] void refuse(const std::string& what) { throw InputError("mesh that deforms: " + what); }
@@ -71,7 +72,7 @@ double MeshMotion::key_time(std::int64_t key) const {
 
 /// Returns the key before a time for repeating keys.
 std::int64_t MeshMotion::key_before(double time) const {
-    // Local: larger numbers have no fraction.
+    // Local: larger doubles have no fractional part.
     constexpr double kMostRounds = 0x1p52;
     const double period = times_.back() - times_.front();
     const double round = std::clamp(std::floor((time - times_.front()) / period), -kMostRounds, kMostRounds);

@@ -1,9 +1,9 @@
 /// \file
-/// Motion of the vertices of a deforming mesh. Positions are given at certain times, the keys. Between two keys each
+/// Motion of the vertices of a deforming mesh. Positions are given at times that are called keys. Between two keys each
 /// vertex moves along a straight line at constant speed.
 ///
 /// MeshMoment::position() is the only formula for the position of a vertex, and it always rounds in the same way.
-/// Proofs about stored positions of particles therefore apply to the mesh that it defines.
+/// Proofs about stored positions of particles therefore apply to the mesh that this formula defines.
 #pragma once
 
 #include <cstddef>
@@ -45,8 +45,8 @@ struct MeshMoment {
 /// Motion of all vertices of a mesh. Immutable, so it is safe from any number of threads.
 class MeshMotion {
 public:
-    /// Takes the times of the keys, in s, which ascend by more than rounding, and the positions of all vertices at each
-    /// key, in m. Throws InputError in these cases:
+    /// Makes a motion from keys. times: of the keys, in s, ascending by more than rounding. positions: of all vertices
+    /// at each key, in m. Throws InputError in these cases:
     /// - Fewer than two keys.
     /// - Numbers that are not finite or beyond 1e75.
     /// - A number of vertices that differs from the first key.
@@ -62,10 +62,11 @@ public:
 
     /// Returns the vertices at a time, in s. The result is valid as long as this object exists.
     [[nodiscard]] MeshMoment at(double time) const;
-    /// Returns the first key after a time, in s, or infinity if there is none. Rounds of repeating keys begin at
-    /// fl(times[k] + fl(round * period)).
+    /// Returns the time of the first key after a time, in s, or infinity if there is none. Key k of a round of
+    /// repeating keys is at fl(times[k] + fl(round * period)).
     [[nodiscard]] double next_key(double time) const;
-    /// Returns the same motion with every position mapped. Throws InputError if a mapped position is beyond 1e75.
+    /// Returns the motion with every position transformed by a map. Throws InputError if a mapped position is beyond
+    /// 1e75.
     [[nodiscard]] MeshMotion mapped(const AffineMap& map) const;
     /// Returns the bytes in use.
     [[nodiscard]] std::size_t memory_bytes() const;
@@ -81,8 +82,8 @@ private:
     MeshEnds ends_;
 };
 
-/// Returns the motion of a function that gives the positions of all vertices, in m, at a time, in s. The function is
-/// sampled at the given times. Throws InputError as MeshMotion does.
+/// Returns the motion of vertices with positions from a function, in m, at a time, in s. The function is sampled at the
+/// given times. Throws InputError like MeshMotion.
 [[nodiscard]] MeshMotion sampled_motion(const std::function<std::vector<Vec3>(double time)>& positions_at,
                                         std::vector<double> times, MeshEnds ends = MeshEnds::hold);
 

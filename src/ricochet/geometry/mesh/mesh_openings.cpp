@@ -14,8 +14,8 @@
 namespace ricochet {
 namespace {
 
-/// Limits of the directions in which loops are measured: fixed directions, and directions across edges. Long loops skip
-/// some of their edges.
+/// Numbers of directions in which a loop is measured: fixed directions, and the most directions across edges. Long
+/// loops skip some of their edges.
 constexpr int kDirections = 90;
 constexpr std::size_t kMostEdges = 512;
 

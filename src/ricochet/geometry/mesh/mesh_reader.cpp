@@ -14,7 +14,8 @@
 namespace ricochet {
 namespace {
 
-// A signature in the content takes precedence over the name. Without a signature, the extension decides.
+// Returns the format of a file. A signature in the content takes precedence over the name. Without a signature, the
+// extension decides.
 std::optional<MeshFormat> format_of(const MeshSource& source, const std::filesystem::path& path) {
     if (looks_like_ply(source)) return MeshFormat::kPly;
     if (has_binary_stl_size(source) || starts_with_solid(source)) return MeshFormat::kStl;
@@ -25,7 +26,7 @@ std::optional<MeshFormat> format_of(const MeshSource& source, const std::filesys
     return std::nullopt;
 }
 
-// Independent of the locale, because file formats are ASCII.
+// Converts only ASCII letters, independently of the locale, because file formats are ASCII.
 std::string ascii_lower(std::string text) {
     for (char& c : text) {
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
@@ -33,7 +34,7 @@ std::string ascii_lower(std::string text) {
     return text;
 }
 
-/// Folder of a glTF file's buffers; nullopt for a file that is in memory.
+/// Folder of a glTF file's buffers; nullopt for a file in memory.
 using Folder = std::optional<std::filesystem::path>;
 
 ParsedMesh parse(const MeshSource& source, const std::filesystem::path& path, const Folder& folder) {
@@ -103,7 +104,7 @@ ImportedMesh read_mesh(const std::filesystem::path& path, MeshContent content) {
     ParsedMesh parsed = [&path] {
         const FileBytes bytes = read_regular_file(path);
         return parse_checked(path, bytes.view(), path.parent_path());
-    }();  // the file's bytes are freed before triangulation
+    }();  // frees the file's bytes before triangulation
     return finish(std::move(parsed), content);
 }
 

@@ -2,31 +2,32 @@
 /// Strict mesh import: OBJ, PLY, STL, OFF and glTF in double precision.
 ///
 /// A file is read completely or refused, and nothing is skipped without a note. Only the named file is opened (no
-/// material libraries). For a glTF file, the files of its buffers are opened too, if they are beside it or in a folder
-/// below. Memory is bounded by a small multiple of the file's size, whatever counts its header promises. There is no
-/// shared state, so any number of files can be read at the same time.
+/// material libraries). For a glTF file, the files of its buffers are opened too, if they are beside it or in a
+/// subfolder. Memory is bounded by a small multiple of the file's size, even if counts in the header are wrong. The
+/// readers share no state, so any number of files can be read at the same time.
 ///
 /// Formats (sources: the OBJ appendix B1 of the Advanced Visualizer manual; G. Turk's PLY description; 3D Systems' STL
 /// description; the Geomview manual's OFF page):
 /// - OBJ: Vertices (v) have x y z. Following w or colour values are not used. Faces (f) have any number of corners of
-///   the forms v, v/t, v//n and v/t/n. Negative indices are allowed, and continuation lines in every statement. Texture
-///   coordinates, normals, points, lines and render settings are ignored. Statements unknown to OBJ are left out and
-///   noted. Free-form curves and surfaces, `call` and `csh` are refused. A comment ends the name after `usemtl`, `g` or
-///   `o`.
+///   the forms v, v/t, v//n and v/t/n. Negative indices are allowed. Every statement may have continuation lines.
+///   Texture coordinates, normals, points, lines and render settings are ignored. Statements unknown to OBJ are left
+///   out and noted. Free-form curves and surfaces, `call` and `csh` are refused. A comment ends the name after
+///   `usemtl`, `g` or `o`.
 /// - PLY: ASCII and both binary byte orders. Elements and properties can have any order, and unknown ones are skipped.
 ///   Faces are vertex_indices or vertex_index lists, or triangle strips. An unknown header line before the first
 ///   element is left out and noted. Later ones are refused.
 /// - STL: ASCII and binary, distinguished by size. An ASCII file can have several solids, whose names become the groups
-///   of their facets. Corners with equal coordinates become one vertex. Lines of an ASCII file may begin with '#' as
-///   comments. One byte or line end behind a binary file is left out and noted.
+///   of their facets. Corners with equal coordinates become one vertex. Lines of an ASCII file that begin with '#' are
+///   comments. One additional byte or line end after the data of a binary file is left out and noted.
 /// - glTF 2.0 (the Khronos specification): text and binary. Triangles, strips and fans are placed in metres by the
 ///   nodes of the scene. The file has y up and the result has z up: (x, y, z) is read as (x, -z, y). Meshes that are
 ///   compressed or posed by skins or morph targets are refused. Points, lines and nodes hidden by KHR_node_visibility
 ///   are left out and noted.
-/// - FBX, DAE (Collada), 3DS and others: read by the Assimp library, if this build has it. Coordinates have its single
-///   precision, and time and memory are not bounded by the file's size.
-/// - OFF: with any of the prefixes ST, C, N (extra values per vertex are not used), by lines or as free-form text. The
-///   number of vertices can directly follow the keyword. 4OFF, nOFF and binary OFF are refused.
+/// - FBX, DAE (Collada), 3DS and others: read by the Assimp library, if this build has it. Coordinates have the single
+///   precision of Assimp, and time and memory are not bounded by the file's size.
+/// - OFF: with any of the prefixes ST, C, N (extra values per vertex are not used). The text has one vertex or face per
+///   line, or is free-form. The number of vertices can directly follow the keyword. 4OFF, nOFF and binary OFF are
+///   refused.
 #pragma once
 
 #include <cstddef>
@@ -41,8 +42,8 @@
 
 namespace ricochet {
 
-/// Result of joining the separate facets of an STL file, or the corners of a glTF file. Corners are joined if their
-/// coordinates are equal (0 and -0 are equal), never if they are only close.
+/// Result of joining the corners of an STL or glTF file. Corners are joined only if their coordinates are exactly equal
+/// (0 and -0 are equal).
 struct WeldReport {
     std::size_t corners = 0;   ///< corners of facets in the file
     std::size_t vertices = 0;  ///< different positions among them
@@ -51,7 +52,7 @@ struct WeldReport {
 /// A mesh file's contents.
 struct ImportedMesh {
     PolygonMesh polygons;                         ///< faces as listed in the file
-    TriangleMesh mesh;                            ///< the collision mesh: every face, triangulated, none dropped
+    TriangleMesh mesh;                            ///< the collision mesh: all faces, triangulated
     std::vector<std::uint32_t> triangle_face;     ///< face of every triangle
     std::string format;                           ///< for example "OBJ" or "PLY, binary little endian"
     std::optional<WeldReport> weld;               ///< STL and glTF only
@@ -70,10 +71,11 @@ enum class MeshContent : std::uint8_t {
     triangles,
 };
 
-/// Reads a mesh file. The content determines the format if it has a signature (PLY, OFF, STL, binary glTF). Otherwise
-/// the extension does. Coordinates smaller than 2^-287 m become zero, so that products stay in range.
-/// Throws InputError "path:line: what is wrong" for text, "path: byte N: what is wrong" for binary data, and "path:
-/// what is wrong" for the file as a whole. Reasons:
+/// Reads a mesh file. The content determines the format if it has a signature (PLY, OFF, STL, binary glTF). Without a
+/// signature, the extension determines the format. Coordinates smaller than 2^-287 m become zero, so that products stay
+/// in range.
+/// Throws InputError "path:line: REASON" for text, "path: byte N: REASON" for binary data, and "path: REASON" for the
+/// file as a whole. Reasons:
 /// - Not a regular file, or an unknown format.
 /// - A statement that cannot be parsed.
 /// - Counts that disagree with the data.
@@ -82,8 +84,8 @@ enum class MeshContent : std::uint8_t {
 /// - No faces.
 [[nodiscard]] ImportedMesh read_mesh(const std::filesystem::path& path, MeshContent content = MeshContent::everything);
 
-/// Reads a file that is already in memory. The name is used in messages, and its extension as in the function above. A
-/// glTF file whose buffers are separate files is refused.
+/// Reads a file that is already in memory. The name is used in messages, and its extension can determine the format as
+/// in the function above. A glTF file whose buffers are separate files is refused.
 [[nodiscard]] ImportedMesh read_mesh(const std::filesystem::path& name, std::string_view bytes,
                                      MeshContent content = MeshContent::everything);
 

@@ -33,7 +33,8 @@ void require_regular(const std::filesystem::path& path, const struct stat& statu
 
 class FileDescriptor {
 public:
-    // Opened without blocking. If the name becomes a FIFO after the check, opening it must not wait for a writer.
+    // Opens the file without blocking. If a FIFO replaces the file after the check, the call must not wait for a
+    // writer.
     explicit FileDescriptor(const std::filesystem::path& path)
         : value_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {}
     ~FileDescriptor() {
@@ -51,13 +52,13 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; 
 bool is_line_break(char c) { return c == '\n' || c == '\r'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// from_chars refuses a leading plus, which the formats allow.
+// Skips a leading plus, which the formats allow, but from_chars refuses.
 const char* skip_plus(const char* at, const char* end) {
     return end - at > 1 && *at == '+' && (is_digit(at[1]) || at[1] == '.') ? at + 1 : at;
 }
 
-// Returns true if a number outside the range of doubles is too small. The decimal position of its first nonzero digit
-// decides.
+// Returns true if a number outside the range of doubles is too small, and false if it is too large. The decimal
+// position of its first nonzero digit decides.
 bool is_too_small(std::string_view text) {
     const std::size_t exponent_mark = text.find_first_of("eE");
     const std::string_view mantissa = text.substr(0, exponent_mark);
@@ -68,7 +69,7 @@ bool is_too_small(std::string_view text) {
         if (digits.starts_with('+')) digits.remove_prefix(1);
         const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
         if (result.ec == std::errc::result_out_of_range) return digits.starts_with('-');
-        // A larger exponent makes no difference for any number of digits, and the clamp prevents overflow of the sum
+        // A larger exponent gives the same result for any number of digits. The clamp prevents overflow of the sum
         // below.
         exponent = std::clamp(exponent, -kLargestExponent, kLargestExponent);
     }
@@ -176,7 +177,7 @@ std::string TextCursor::rest_of_line() {
     std::string rest;
     while (!at_line_end()) {
         const char* const start = at_;
-        const char* last = at_;  // behind the last word of this line
+        const char* last = at_;  // end of the last word of this line
         while (at_ != end_ && !is_line_break(*at_)) {
             if (is_blank(*at_)) {
                 ++at_;
@@ -273,7 +274,7 @@ Vec3 TextCursor::point(const char* what) {
     return {x, y, z};
 }
 
-// Reads digits without a sign that are too few to overflow. Nearly every index has this form.
+// Reads a number without a sign that has too few digits to overflow. Nearly every index has this form.
 std::optional<std::int64_t> TextCursor::small_number() {
     constexpr std::ptrdiff_t kSafeDigits = 18;
     const char* const most = end_ - at_ > kSafeDigits ? at_ + kSafeDigits : end_;

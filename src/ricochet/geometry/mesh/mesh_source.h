@@ -1,6 +1,6 @@
 /// \file
-/// Common parts of the mesh readers: a file's bytes, a text cursor, limits, errors and the reader of each format.
-/// Private to the mesh readers.
+/// Common parts of the mesh readers: a file's bytes, a text cursor, limits, errors, and the reader functions of all
+/// formats. Private to the mesh readers.
 #pragma once
 
 #include <cmath>
@@ -22,7 +22,7 @@
 
 namespace ricochet {
 
-/// Bytes of a mesh file. Does not own them.
+/// View of the bytes of a mesh file.
 struct MeshSource {
     std::string name;        ///< file name for messages
     std::string_view bytes;  ///< the whole file
@@ -46,7 +46,7 @@ struct FileBytes {
 /// Reads a whole regular file. Throws InputError for anything else (folder, FIFO, device) without opening it.
 [[nodiscard]] FileBytes read_regular_file(const std::filesystem::path& path);
 
-/// Result of a format's reader: the faces as listed.
+/// Result of a format's reader: the faces as listed in the file.
 struct ParsedMesh {
     PolygonMesh polygons;
     std::string format;
@@ -56,7 +56,7 @@ struct ParsedMesh {
     std::vector<std::string> notes{};            ///< notes on content that was not read, one sentence each
 };
 
-/// Largest number of vertices or corners. More are refused, because indices are 32-bit.
+/// Largest number of vertices or corners. Files with more are refused, because indices have 32 bits.
 inline constexpr std::uint64_t kLargestIndexCount = std::numeric_limits<std::uint32_t>::max();
 
 /// Ends the current face of a mesh under construction.
@@ -73,14 +73,14 @@ void require_plain_text(const MeshSource& source);
 /// Reads a text once, in words, numbers and lines. Lines end with LF, CR LF or CR. Numbers are read independently of
 /// the locale.
 ///
-/// Inline functions decide the common case (a printable character, one blank, a lone LF). The `_slowly` functions
+/// Inline functions handle the common cases (a printable character, one blank, a lone LF). The `_slowly` functions
 /// implement the complete rule, with comments and continuation lines.
 class TextCursor {
 public:
     /// Syntax of comments and continuation lines in a format.
     struct Syntax {
         bool hash_comments = false;             ///< '#' starts a comment that ends with the line
-        bool backslash_continues_line = false;  ///< a backslash at the end joins the next line
+        bool backslash_continues_line = false;  ///< a backslash at the end of a line joins the next line
     };
 
     /// Starts at the first line, after a UTF-8 byte order mark if there is one.
@@ -101,10 +101,10 @@ public:
     }
     /// Reads the next word of the line. Returns an empty word at the end of the line.
     [[nodiscard]] std::string_view word();
-    /// Returns the rest of the line without blanks at its ends. As the syntax specifies, a comment after a blank is
-    /// left out, and continuation lines are joined by one blank each.
+    /// Returns the rest of the line without blanks at its ends. Depending on the syntax, a comment after a blank is
+    /// left out, and continuation lines are joined with one blank.
     [[nodiscard]] std::string rest_of_line();
-    /// Moves to the line after the statement, behind its continuation lines.
+    /// Moves to the line after the statement and its continuation lines.
     void skip_statement();
     /// Moves to the start of the next line.
     void next_line() {
@@ -121,10 +121,10 @@ public:
     [[nodiscard]] const MeshSource& source() const { return source_; }
     [[nodiscard]] std::size_t bytes_left() const { return static_cast<std::size_t>(end_ - at_); }
 
-    /// Reads the next word of the line as a finite number. `what` names it in errors.
+    /// Reads the next word of the line as a finite number. `what` names the number in errors.
     [[nodiscard]] double number(const char* what);
-    /// Skips an unused number. Returns false if it is not finite. Some programs write such values for an unknown colour
-    /// ("nan", "-nan(ind)", "inf", "1.#QNAN").
+    /// Skips an unused number. Returns false if the number is not finite. Some programs write such numbers for an
+    /// unknown colour ("nan", "-nan(ind)", "inf", "1.#QNAN").
     [[nodiscard]] bool skip_number(const char* what);
     /// Reads a finite number within the range of coordinates. Tiny values become zero.
     [[nodiscard]] double coordinate(const char* what);
@@ -133,7 +133,7 @@ public:
     [[nodiscard]] std::int64_t integer(const char* what);
     /// Reads an integer that may be followed by other characters of the same word (OBJ corners).
     [[nodiscard]] std::int64_t integer_part(const char* what);
-    /// Consumes a character if it comes next, without skipping blanks. Returns true if it did.
+    /// Consumes a character if it comes next, without skipping blanks. Returns true if the character came next.
     [[nodiscard]] bool take(char c);
     /// Returns true if the character comes next, without skipping blanks.
     [[nodiscard]] bool comes_next(char c) const { return at_ != end_ && *at_ == c; }
@@ -162,22 +162,24 @@ private:
     Syntax syntax_;
 };
 
-/// Returns a coordinate in the range in which the predicates are exact, or nullopt if it is too large or not finite.
+/// Returns the coordinate, or 0 if it is too small for exact predicates. Returns nullopt if it is too large or not
+/// finite.
 [[nodiscard]] inline std::optional<double> accepted_coordinate(double value) {
     if (!(std::fabs(value) <= kLargestCoordinate)) return std::nullopt;
     return std::fabs(value) < kSmallestExactCoordinate ? 0.0 : value;
 }
 
-/// Reads OBJ text. Each face has the material (usemtl), the group (g) and the object (o) that are valid at the face.
+/// Reads OBJ text. Each face gets the material (usemtl), the group (g) and the object (o) of the last such statements
+/// before it.
 [[nodiscard]] ParsedMesh read_obj(const MeshSource& source);
 
-/// Returns true if the text's first statement exists in OBJ.
+/// Returns true if the text's first statement is one of the OBJ format.
 [[nodiscard]] bool looks_like_obj(const MeshSource& source);
 
 /// Reads OFF text with any of the prefixes ST, C and N. Every vertex and every face has its own line. Values after the
 /// coordinates and after a face's indices (colours, normals, texture) must be numbers and are not used. If this fails,
-/// the file is read as free-form text, in which line ends separate numbers like blanks. It must then contain exactly as
-/// many numbers as its counts and prefixes promise.
+/// the file is read as free-form text, in which line ends separate numbers like blanks. The text must then contain
+/// exactly as many numbers as its counts and prefixes require.
 [[nodiscard]] ParsedMesh read_off(const MeshSource& source);
 
 /// Returns true if the text's first word is the keyword OFF with any of its prefixes.
@@ -185,12 +187,12 @@ private:
 
 /// Reads the elements vertex, face and tristrips, and skips all others. A vertex has x, y and z of any type. A face has
 /// a list vertex_indices or vertex_index. A strip has a list vertex_indices, in which -1 starts a new strip. In an
-/// ASCII file every element has its own line. Triangles of a strip that repeat a vertex only change its direction and
-/// are not faces.
+/// ASCII file every element has its own line. Triangles of a strip that repeat a vertex only change the strip's
+/// direction and are not faces.
 [[nodiscard]] ParsedMesh read_ply(const MeshSource& source);
 
-/// Returns true if the size matches the triangle count at byte 80, or exceeds it by one byte or by CR LF. The header's
-/// text does not matter.
+/// Returns true if the size matches the triangle count at byte 80, or exceeds it by one byte or by CR LF. The text of
+/// the header is ignored.
 [[nodiscard]] bool has_binary_stl_size(const MeshSource& source);
 
 /// Returns true if the text starts with the word "solid". Lines that begin with '#' may come before it.
@@ -200,13 +202,13 @@ private:
 /// file becomes the group of its facets.
 [[nodiscard]] ParsedMesh read_stl(const MeshSource& source);
 
-/// Number of triangle corners that any glTF file may show, however small. Larger files may show 16 per byte.
+/// Number of triangle corners that a glTF file of any size may show. Large files may show 16 corners per byte.
 inline constexpr std::size_t kFreeGltfCorners = 4'000'000;
 
 /// Reads glTF 2.0, as text or binary (GLB). The result has the triangles of the scene that the file shows, placed by
-/// its nodes, with z up. Corners of one mesh at one node are joined if their coordinates are equal. A face has the name
-/// of its material, the mesh's name as its group, and the node's as its object. `folder` contains the files of buffers.
-/// If it is nullopt, such files are refused.
+/// its nodes, with z up. Corners of one mesh at one node are joined if their coordinates are equal. A face gets the
+/// name of its material, the mesh's name as its group, and the node's name as its object. `folder` contains the files
+/// of buffers. If `folder` is nullopt, such files are refused.
 [[nodiscard]] ParsedMesh read_gltf(const MeshSource& source, const std::optional<std::filesystem::path>& folder,
                                    std::size_t free_corners = kFreeGltfCorners);
 
@@ -214,8 +216,8 @@ inline constexpr std::size_t kFreeGltfCorners = 4'000'000;
 [[nodiscard]] bool looks_like_glb(const MeshSource& source);
 
 /// Reads a file with the Assimp library, which finds the format by content and extension (".fbx"). The result has the
-/// faces that the file's nodes place, as in read_gltf(). No other file is opened. Also throws InputError if this build
-/// has no Assimp.
+/// faces as placed by the file's nodes, like that of read_gltf(). No other file is opened. Also throws InputError if
+/// this build has no Assimp.
 [[nodiscard]] ParsedMesh read_foreign(const MeshSource& source, const std::string& extension);
 
 /// Returns true if this build has Assimp.

@@ -42,7 +42,7 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 using Corners = std::span<const std::uint32_t>;
 
-// Adds a face. Equal neighbours count once. A face with fewer than three remaining corners is not added.
+// Adds a face. Equal neighbouring corners count once. A face with fewer than three remaining corners is not added.
 void add_face(Corners corners, FaceList& faces) {
     const std::size_t first = faces.corners.size();
     for (const std::uint32_t corner : corners) {
@@ -83,7 +83,7 @@ Corners corners_of(const TriangleMesh& mesh) {
     return {mesh.triangles.front().data(), 3 * mesh.triangles.size()};
 }
 
-// Returns true if exactly one half-edge runs along the edge in each direction, so that both can be glued.
+// Returns true if exactly one half-edge runs along the edge in each direction. Two such half-edges can be joined.
 bool is_manifold_edge(const FaceList& faces, std::span<const std::uint32_t> uses) {
     return uses.size() == 2 && faces.corners[uses[0]] != faces.corners[uses[1]];
 }
@@ -151,7 +151,7 @@ std::size_t count_unnamed(Corners corners, std::size_t vertex_count) {
     return static_cast<std::size_t>(std::count(named.begin(), named.end(), 0));
 }
 
-/// Returns the faces that equal an earlier face after normalize(corners), in increasing order.
+/// Returns, in increasing order, the faces whose corners equal the corners of an earlier face after normalize(corners).
 template <class Normalize>
 std::vector<std::uint32_t> faces_with_earlier_equals(const FaceList& faces, const Normalize& normalize) {
     const std::size_t count = faces.face_count();
@@ -197,14 +197,14 @@ std::vector<std::uint32_t> faces_of_corners(const FaceList& faces) {
     return face_of;
 }
 
-// The half-edge mesh is assembled from the edge table instead of by add_face. That function searches all edges of a
-// vertex for every face, which is quadratic at the tip of a large fan. It also refuses non-manifold input. Here every
-// vertex is first split into its fans. They are manifold by construction, because a half-edge vertex has at most one
-// gap.
+// The half-edge mesh is assembled from the edge table instead of with OpenMesh's add_face(). That function searches all
+// edges of a vertex for every face, which takes quadratic time at the tip of a large fan. It also refuses non-manifold
+// input. Here every vertex is first split into its fans. The result is manifold by construction, because a half-edge
+// vertex has at most one gap.
 struct MeshTopology::Impl {
     OpenMesh::PolyConnectivity mesh;
-    std::vector<std::uint32_t> vertex_of_fan;  // vertex of the index list for every half-edge vertex
-    std::vector<char> is_real_boundary;        // per edge: it belongs to one face and is not a cut
+    std::vector<std::uint32_t> vertex_of_fan;  // index of the mesh vertex, for every half-edge vertex
+    std::vector<char> is_real_boundary;        // per edge: true if it belongs to one face and is not a cut
     TopologyReport report;
 
     [[nodiscard]] static std::unique_ptr<Impl> of(const FaceList& faces, std::size_t vertex_count);
@@ -237,7 +237,7 @@ void MeshTopology::Impl::add_vertices(const FaceList& faces, const EdgeTable& ed
     });
     fan_of_corner.assign(faces.corners.size(), kNone);
     for (std::uint32_t c = 0; c < faces.corners.size(); ++c) {
-        const std::uint32_t first = fans.find(c);  // not after c, so it already has its index
+        const std::uint32_t first = fans.find(c);  // at most c, so its index is already known
         if (first == c) {
             fan_of_corner[c] = static_cast<std::uint32_t>(vertex_of_fan.size());
             vertex_of_fan.push_back(faces.corners[c]);
@@ -282,7 +282,8 @@ void MeshTopology::Impl::add_faces(const FaceList& faces) {
     }
 }
 
-// A vertex at a gap starts exactly one half-edge without a face. OpenMesh requires it to be the vertex's own half-edge.
+// Exactly one half-edge without a face starts at a vertex with a gap. OpenMesh requires that the vertex stores this
+// half-edge.
 void MeshTopology::Impl::close_gaps() {
     for (std::size_t h = 0; h < mesh.n_halfedges(); ++h) {
         const OpenMesh::HalfedgeHandle halfedge(static_cast<int>(h));
@@ -393,7 +394,7 @@ std::vector<std::uint32_t> repeated_faces(const FaceList& faces) {
 
 std::vector<std::uint32_t> copied_faces(const FaceList& faces) {
     return faces_with_earlier_equals(faces, [](std::span<std::uint32_t> corners) {
-        // Not std::ranges::rotate(), which clang 14 cannot compile with this standard library.
+        // std::ranges::rotate() is not used, because clang 14 cannot compile it with this standard library.
         std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
     });
 }

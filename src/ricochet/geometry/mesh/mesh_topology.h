@@ -1,5 +1,5 @@
 /// \file
-/// Connectivity of the faces of a mesh. This is the only header that wraps OpenMesh.
+/// Connectivity of the faces of a mesh. Only this header and its source wrap OpenMesh.
 #pragma once
 
 #include <algorithm>
@@ -26,28 +26,28 @@ struct FaceList {
     [[nodiscard]] std::size_t face_count() const { return face_offsets.size() - 1; }
 };
 
-/// Lists the triangles that have three different vertices. If `numbers` is given, it receives the triangle of each
-/// face.
+/// Lists the triangles that have three different vertices. If `numbers` is given, it receives the triangle index of
+/// each face.
 [[nodiscard]] FaceList faces_of(const TriangleMesh& mesh, std::vector<std::uint32_t>* numbers = nullptr);
 
 /// Returns the face of every corner.
 [[nodiscard]] std::vector<std::uint32_t> faces_of_corners(const FaceList& faces);
 
-/// Returns the faces with the same vertices as an earlier one, in any order of vertices. The list is in increasing
+/// Returns the faces with the same vertices as an earlier face, in any order of vertices. The list is in increasing
 /// order.
 [[nodiscard]] std::vector<std::uint32_t> repeated_faces(const FaceList& faces);
-/// Returns the faces that have the corners of an earlier one in the same cyclic order, in increasing order.
+/// Returns the faces with the corners of an earlier face in the same cyclic order. The list is in increasing order.
 [[nodiscard]] std::vector<std::uint32_t> copied_faces(const FaceList& faces);
 
-/// All uses of all edges, grouped by edge. The half-edge of corner c goes from its vertex to the vertex of
+/// All uses of all edges, grouped by edge. The half-edge of corner c goes from the vertex of c to the vertex of
 /// next_corner[c]. Method: bucket sort by the edge's smaller vertex, linear in the number of corners for meshes of
 /// bounded valence.
 class EdgeTable {
 public:
     EdgeTable(const FaceList& faces, std::size_t vertex_count);
 
-    /// Calls visit(corners) once per edge. The corners, in increasing order, are those whose half-edges run along the
-    /// edge in either direction.
+    /// Calls visit(corners) once per edge. corners: those whose half-edges run along the edge, in either direction, in
+    /// increasing order.
     template <typename Visit>
     void for_each_edge(Visit&& visit) const {
         std::vector<std::uint32_t> corners;
@@ -77,15 +77,15 @@ private:
 struct TopologyReport {
     bool closed = false;                   ///< an inside exists, see closed_surface.h
     std::size_t shells = 0;                ///< sets of faces connected by edges
-    std::size_t boundary_edges = 0;        ///< edges of one face
+    std::size_t boundary_edges = 0;        ///< edges with only one face
     std::size_t boundary_loops = 0;        ///< closed chains of boundary half-edges, see MeshTopology::boundary_loops
-    std::size_t nonmanifold_edges = 0;     ///< edges of three faces or more
+    std::size_t nonmanifold_edges = 0;     ///< edges with three or more faces
     std::size_t nonmanifold_vertices = 0;  ///< vertices whose faces form several groups without a common edge
-    /// Edges whose numbers of faces in the two directions differ by more than one. An edge of two solids that touch
-    /// there has two faces in each direction and is consistent.
+    /// Edges whose numbers of faces in the two directions differ by more than one. An edge at which two solids touch
+    /// has two faces in each direction, and is consistent.
     std::size_t inconsistent_edges = 0;
     bool consistently_oriented = false;  ///< no inconsistent edge
-    std::size_t unused_vertices = 0;     ///< vertices that no face names
+    std::size_t unused_vertices = 0;     ///< vertices that no face uses
 };
 
 /// Marker for a missing vertex.
@@ -95,20 +95,21 @@ inline constexpr std::uint32_t kNoVertex = 0xFFFFFFFFU;
 struct MeshEdge {
     std::uint32_t first;   ///< vertex
     std::uint32_t second;  ///< vertex, first < second
-    /// Corner of the triangle on either side that is not on the edge. It is kNoVertex if there is no face, or if the
-    /// face is not a triangle. Both are kNoVertex if the surface is not manifold at the edge.
+    /// Vertices, opposite to the edge, of the triangles on both sides. An entry is kNoVertex if there is no face on
+    /// that side, or if the face is not a triangle. Both entries are kNoVertex if the surface is not manifold at the
+    /// edge.
     std::array<std::uint32_t, 2> opposite;
 };
 
 /// Half-edge structure of a polygon mesh. A half-edge structure cannot represent edges of several faces, vertices that
-/// join separate sheets, or neighbours of opposite winding. It is cut open there. The counts of the report still
-/// describe the index list. Time and memory are linear in the number of corners.
+/// join separate sheets, or neighbours of opposite winding. The structure is cut open at such edges and vertices. The
+/// counts of the report still describe the uncut index list. Time and memory are linear in the number of corners.
 class MeshTopology {
 public:
     explicit MeshTopology(const PolygonMesh& mesh);
-    /// Builds the structure for triangles. It can differ from the structure of the original polygons in one case. If
-    /// two polygons share two corners that are not adjacent, both may be cut along the line between these corners. The
-    /// line then is an edge of four triangles.
+    /// Builds the structure for triangles. It can differ from the structure of the original polygons in one case: two
+    /// polygons share two corners that are not adjacent. The triangulation may cut both polygons along the line between
+    /// these corners. The line is then an edge of four triangles.
     explicit MeshTopology(const TriangleMesh& mesh);
     ~MeshTopology();
     MeshTopology(MeshTopology&&) noexcept;
@@ -117,8 +118,8 @@ public:
     [[nodiscard]] const TopologyReport& report() const;
 
     /// Returns the chains of half-edges that bound the surface, as vertex indices. The surface is on the right of each
-    /// chain, opposite to the faces' direction. A chain that meets cuts of the half-edge structure continues along
-    /// them. Chains that consist of cuts alone are left out.
+    /// chain, opposite to the faces' direction. A chain that reaches a cut of the half-edge structure continues along
+    /// the cut. Chains that consist only of cuts are left out.
     [[nodiscard]] std::vector<std::vector<std::uint32_t>> boundary_loops() const;
 
     /// Returns every edge of the index list once, in the order of (first, second).
@@ -130,10 +131,10 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Returns the number of vertices that no triangle names.
+/// Returns the number of vertices that no triangle uses.
 [[nodiscard]] std::size_t count_unused_vertices(const TriangleMesh& mesh);
 
-/// Returns the number of faces with the same vertices as an earlier one, in any order of vertices.
+/// Returns the number of faces with the same vertices as an earlier face, in any order of vertices.
 [[nodiscard]] std::size_t count_duplicate_faces(const PolygonMesh& mesh);
 
 /// Returns OpenMesh's version, for `--version` and reports.

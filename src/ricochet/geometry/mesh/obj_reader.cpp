@@ -12,9 +12,8 @@
 namespace ricochet {
 namespace {
 
-// Statements without geometry that a particle can hit: normals and texture coordinates, points and lines (no area),
-// render settings and other files. Attributes of curves are also ignored, because they only matter for a drawn curve or
-// surface.
+// Statements that contain no surface: normals and texture coordinates, points and lines (no area), render settings and
+// other files. Attributes of curves are also ignored, because only statements that draw a curve or surface use them.
 constexpr std::array<std::string_view, 32> kIgnored = {
     "vt",       "vn",       "s",     "mtllib", "p",   "l",      "vp",         "maplib",    "usemap", "lod",  "bevel",
     "c_interp", "d_interp", "stech", "ctech",  "mg",  "cstype", "deg",        "bmat",      "step",   "parm", "trim",
@@ -28,7 +27,7 @@ bool contains(const List& list, std::string_view word) {
     return std::find(list.begin(), list.end(), word) != list.end();
 }
 
-// Counts of lines that begin like vertices and faces. They are usually the sizes of the lists.
+// Numbers of lines that begin like vertices and faces. They are usually the final sizes of the lists.
 struct LineCounts {
     std::size_t vertices = 0;
     std::size_t faces = 0;
@@ -70,14 +69,14 @@ public:
     }
 
 private:
-    // An index that was past the last vertex read so far, with its line.
+    // An index past the last vertex read so far, with its line.
     struct IndexUse {
         std::int64_t index = 0;
         std::size_t line = 0;
     };
 
-    // The shortest line that can be read ("v 0 0 0", "f 1 2 3") has 8 bytes. The lists therefore take at most a small
-    // multiple of the file's size, whatever the lines contain.
+    // The shortest line that can be read ("v 0 0 0", "f 1 2 3") has 8 bytes. The memory of the lists is therefore at
+    // most a small multiple of the file's size, for any content.
     void reserve(std::string_view text) {
         constexpr std::size_t kShortestLine = 8;
         const LineCounts counts = count_lines(text);
@@ -107,8 +106,8 @@ private:
         }
     }
 
-    // Leaves out a statement that a program has added. An improbable word, or a misspelt vertex or face, is refused,
-    // because a part of the surface would be missing.
+    // Leaves out a statement that a program has added to the format. An improbable keyword, or a misspelt vertex or
+    // face, is refused, because a part of the surface could be missing without it.
     void leave_out(std::string_view keyword) {
         constexpr std::array<std::string_view, 6> kSlips = {"V", "F", "vertex", "face", "VT", "VN"};
         const auto is_in_name = [](char c) {
@@ -140,7 +139,8 @@ private:
         return notes;
     }
 
-    // After x y z there may be w (a weight of curves), or red green blue with w or alpha.
+    // Reads a vertex. After x y z, the line may contain w (a weight of curves), or red green blue, alone or with w or
+    // alpha.
     void read_vertex() {
         if (mesh_.vertices.size() >= kLargestIndexCount)
             cursor_.fail(fmt::format("more than {} vertices", kLargestIndexCount));
@@ -180,7 +180,7 @@ private:
         mesh_.corners.push_back(vertex_number(index));
     }
 
-    // OBJ counts from 1, or backwards from the last vertex with negative numbers.
+    // Converts an OBJ index, which counts from 1, or backwards from the last vertex if it is negative.
     std::uint32_t vertex_number(std::int64_t index) {
         const auto count = static_cast<std::int64_t>(mesh_.vertices.size());
         if (index == 0) cursor_.fail("vertex index 0, OBJ counts from 1 (or from -1 backwards)");

@@ -10,7 +10,7 @@ namespace {
 
 constexpr TextCursor::Syntax kSyntax = {.hash_comments = true};
 
-// Values that the header's prefixes announce for every vertex after x y z.
+// Additional values of every vertex after x y z, as announced by the prefixes of the header.
 struct OffHeader {
     bool texture = false;
     bool color = false;
@@ -19,13 +19,14 @@ struct OffHeader {
     bool any_dimension = false;
 };
 
-// Returns the keyword with its prefixes. Some programs write the number of vertices directly after it ("OFF8 12 0").
+// Returns the keyword with its prefixes. Some programs write the number of vertices directly after the keyword ("OFF8
+// 12 0").
 std::string_view keyword_in(std::string_view word) {
     const std::size_t digits = word.find_last_not_of("0123456789");
     return word.substr(0, digits == std::string_view::npos ? 0 : digits + 1);
 }
 
-// Programs write the prefixes in different orders.
+// Parses the prefixes of a keyword in any order, because programs write different orders.
 std::optional<OffHeader> parse_keyword(std::string_view word) {
     word = keyword_in(word);
     if (!word.ends_with("OFF")) return std::nullopt;
@@ -207,7 +208,7 @@ ParsedMesh read_off(const MeshSource& source) {
     try {
         return {OffReader(source, OffForm::lines).read(), "OFF", std::nullopt};
     } catch (const InputError& by_lines) {
-        // The error of the common form is more useful, so it is reported.
+        // The error of the line form is reported, because that form is more common.
         const std::string reason = by_lines.what();
         try {
             return {OffReader(source, OffForm::free).read(), "OFF", std::nullopt};

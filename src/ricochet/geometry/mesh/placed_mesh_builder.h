@@ -1,5 +1,5 @@
 /// \file
-/// Builds one mesh from all meshes that a tree of nodes places. Private to the readers of such files.
+/// Builds one mesh from all meshes that a tree of nodes places. Private to the readers of files with nodes.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,8 @@ namespace ricochet {
 [[nodiscard]] std::string misplaced_point(std::size_t number, const Vec3& placed);
 
 /// Collects placed faces in a world with y up and returns them with z up. Corners of one placed mesh are joined if
-/// their coordinates are equal. Programs duplicate a vertex for every corner with a different normal or texture.
+/// their coordinates are equal. This is necessary, because programs duplicate a vertex for corners with different
+/// normals or textures.
 class PlacedMeshBuilder {
 public:
     PlacedMeshBuilder() { mesh_.face_offsets.push_back(0); }
@@ -30,13 +31,13 @@ public:
     PlacedMeshBuilder& operator=(const PlacedMeshBuilder&) = delete;
 
     void reserve(std::size_t corners);
-    /// Starts a placed mesh for the faces that follow. `world` maps mesh coordinates to the file's world.
+    /// Starts a placed mesh for the next faces. `world` maps mesh coordinates to the file's world.
     void begin(const AffineMap& world, const std::string& object, const std::string& group);
-    /// Sets the material of the faces that follow.
+    /// Sets the material of the next faces.
     void set_material(const std::string& name) { names_.names().material = name; }
-    /// Adds a corner to the next face. Returns nullopt, or its placed position if that is not finite or out of range.
+    /// Adds a corner to the current face. Returns nullopt, or the placed position if it is not finite or out of range.
     [[nodiscard]] std::optional<Vec3> add_corner(const Vec3& local);
-    /// Ends the face. A mirroring placement reverses it, so that its outside stays outside.
+    /// Ends the face. A mirroring placement reverses the face's winding, so that its outside stays outside.
     void end_face();
     /// Ends the mesh that begin() started.
     void end();

@@ -10,17 +10,17 @@
 
 namespace ricochet {
 
-/// Extent, in m, above which a mesh is probably in another unit. Terrain measures about 100 m. Machine parts in
-/// millimetres measure 50 and more. Larger parts are therefore detected, and small ones are not. Local, because it
-/// decides only about a warning.
+/// Extent, in m, above which a mesh is probably in another unit. Terrain measures about 100 m. Machine parts have
+/// extents of 50 and more if their unit is the millimetre. Only parts larger than this limit are therefore detected.
+/// Local, because it decides only about a warning.
 inline constexpr double kLargestPlausibleExtent = 200.0;
 
-/// The same limit for STL, in m. STL files name no unit and are usually in millimetres. Local, because it decides only
-/// about a warning.
+/// Limit that replaces kLargestPlausibleExtent for STL, in m. It is smaller, because STL files name no unit and are
+/// usually in millimetres. Local, because it decides only about a warning.
 inline constexpr double kLargestPlausibleStlExtent = 20.0;
 
-/// Extent, in m, below which a mesh is implausible. Below a millimetre, air and adhesion dominate instead of impacts.
-/// Most meshes of this size were converted twice. Local, because it decides only about a warning.
+/// Extent, in m, below which a mesh is implausible. Below a millimetre, air and adhesion dominate over impacts. Most
+/// meshes of this size are results of converting the unit twice. Local, because it decides only about a warning.
 inline constexpr double kSmallestPlausibleExtent = 1e-3;
 
 /// Origin of a mesh's unit.
@@ -30,7 +30,7 @@ enum class SizeOrigin {
     stated,    ///< metres, because the user has stated a unit
 };
 
-/// Returns the origin for a file format, as ImportedMesh::format names it, or for an extension.
+/// Returns the origin for a file format (ImportedMesh::format) or for an extension.
 [[nodiscard]] SizeOrigin size_origin(std::string_view format_or_extension);
 
 /// Returns a clause that describes the implausible size of a mesh, with its largest extent in m. Returns nullopt if the

@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace {
 
-// Limits far above the counts that programs write. Names are searched linearly.
+// Limits far above the counts that programs write. They bound the time of linear searches for names.
 constexpr std::size_t kMaxElements = 256;
 constexpr std::size_t kMaxProperties = 1024;
 
@@ -68,8 +68,8 @@ private:
             cursor_.fail(fmt::format("{} after the {} line's values", in_quotes(cursor_.word()), keyword));
     }
 
-    // A line before the first element does not describe data. Some programs write their name there. A misspelt element
-    // is refused when its first property comes.
+    // Leaves out an unknown line before the first element, because it does not describe data. Some programs write their
+    // name there. A misspelt element is refused at its first property.
     void leave_out(std::string_view keyword) {
         const std::string what = fmt::format(
             "unknown header line {}, expected format, element, property, comment or end_header", in_quotes(keyword));
@@ -145,8 +145,8 @@ private:
         return *type;
     }
 
-    // The body starts directly after the line's end. The first line shows the kind of line end. After a lone CR, a byte
-    // 10 is data.
+    // The body starts directly after the end of this line. The first line of the file shows the kind of line end. If
+    // lines end with a lone CR, a byte of value 10 after it is data.
     void end_header() {
         if (!cursor_.at_line_end()) cursor_.fail(fmt::format("{} after end_header", in_quotes(cursor_.word())));
         const MeshSource& source = cursor_.source();
@@ -167,7 +167,8 @@ private:
     std::size_t left_out_line_ = 0;
 };
 
-// A value of an ASCII file takes at least a digit and a blank or line end.
+// Checks that the file is long enough. A value of an ASCII file takes at least two bytes: a digit, and a blank or line
+// end.
 void require_bytes(const MeshSource& source, const PlyHeader& header) {
     const std::size_t left = source.bytes.size() - header.body_byte;
     const bool ascii = header.encoding == PlyEncoding::kAscii;

@@ -41,7 +41,7 @@ struct PlyHeader {
     PlyEncoding encoding = PlyEncoding::kAscii;
     std::vector<PlyElement> elements;
     std::size_t body_byte = 0;       ///< first byte after the header
-    std::size_t body_line = 0;       ///< its line number
+    std::size_t body_line = 0;       ///< line number of body_byte
     std::vector<std::string> notes;  ///< lines that were left out
 
     [[nodiscard]] const PlyElement* find(std::string_view element) const;
@@ -50,7 +50,7 @@ struct PlyHeader {
 /// Returns true if the first line is "ply".
 [[nodiscard]] bool looks_like_ply(const MeshSource& source);
 
-/// Reads the header and checks that the rest of the file is long enough for the counts it promises.
+/// Reads the header and checks that the rest of the file is long enough for the counts in the header.
 [[nodiscard]] PlyHeader read_ply_header(const MeshSource& source);
 
 }  // namespace ricochet

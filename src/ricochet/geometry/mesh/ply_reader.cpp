@@ -58,7 +58,7 @@ public:
 
     void begin_element(const PlyElement&, std::uint64_t) {}
     void end_element() {}
-    // Some programs end the file with a line break.
+    // Checks that only blanks follow, because some programs end the file with a line break.
     void end_body() {
         const std::size_t more = source_.bytes.find_first_not_of(" \t\r\n", at_);
         if (more != std::string_view::npos) {
@@ -95,7 +95,7 @@ public:
         require(type, count);
         at_ += ply_size(type) * static_cast<std::size_t>(count);
     }
-    // A count is accepted only if that many values can follow.
+    // Checks that the rest of the file can contain `count` values.
     void require(PlyType type, std::int64_t count) const {
         const std::size_t left = source_.bytes.size() - at_;
         if (static_cast<std::uint64_t>(count) > left / ply_size(type)) {

@@ -46,7 +46,7 @@ PointCache read_point_cache(const std::filesystem::path& name, std::string_view 
     require(std::isfinite(first) && std::isfinite(step) && step > 0.0F,
             fmt::format("the first frame is {} and samples are {} frames apart, expected a number, and one above 0",
                         first, step));
-    // The number of points of all samples is below 2^62, but their bytes may exceed 2^64.
+    // The number of points of all samples is below 2^62, but the number of their bytes may exceed 2^64.
     const std::uint64_t all = static_cast<std::uint64_t>(points) * static_cast<std::uint64_t>(samples);
     const bool is_countable = all < std::uint64_t{1} << 58U;
     const std::uint64_t expected = kHeader + kPoint * all;

@@ -5,7 +5,7 @@
 /// The format is little-endian:
 /// - The 12 bytes "POINTCACHE2" and a zero.
 /// - Version (1) and number of points, as 32-bit integers.
-/// - First frame and frames between two samples, as floats.
+/// - First frame, and distance of two samples in frames, as floats.
 /// - Number of samples, as a 32-bit integer.
 /// - X, y and z of every point of every sample, as floats.
 #pragma once
@@ -23,8 +23,8 @@ struct PointCache {
     std::vector<std::vector<Vec3>> positions;  ///< in m, of all points at each sample
 };
 
-/// Reads a whole file that is in memory. Memory is bounded by a small multiple of the file's size. Throws InputError
-/// "name: what is wrong" in these cases:
+/// Reads a file whose bytes are in memory. Memory is bounded by a small multiple of the file's size. Throws InputError
+/// "name: REASON" in these cases:
 /// - Another signature or version.
 /// - Counts that disagree with the file's size.
 /// - No points, or fewer than two samples.

@@ -14,9 +14,9 @@
 namespace ricochet {
 namespace {
 
-/// Marks a triangle without area. It is stored in place of the first neighbour.
+/// Value that marks a triangle without area. It replaces the first neighbour.
 constexpr std::uint32_t kLeftOut = std::numeric_limits<std::uint32_t>::max();
-/// Added to indices into the list of irregular edges, to distinguish them from triangles.
+/// Offset that is added to indices of irregular edges, to distinguish them from indices of triangles.
 constexpr std::uint32_t kIrregularEdge = 1U << 31U;
 
 /// Returns the arc tangent of t in [0, 1] within about 2^-51. The system's function is not used, because its last bit
@@ -30,9 +30,9 @@ double arc_tangent(double t) {
     return 8.0 * t * sum;
 }
 
-/// Returns the angle between two nonzero directions, in rad, within about 2^-50. It is twice the arc tangent of the
-/// difference's length over the sum's length. Method: W. Kahan, "How Futile are Mindless Assessments of Roundoff in
-/// Floating-Point Computation?", 2006, section 12.
+/// Returns the angle between two nonzero directions, in rad, within about 2^-50. The angle is twice the arc tangent of
+/// |p - q| / |p + q| for the unit vectors p and q. Method: W. Kahan, "How Futile are Mindless Assessments of Roundoff
+/// in Floating-Point Computation?", 2006, section 12.
 double angle_between(const Vec3& u, const Vec3& v) {
     const Vec3 p = normalized(u / max_abs(u));
     const Vec3 q = normalized(v / max_abs(v));
@@ -138,8 +138,8 @@ void Pseudonormals::link_edge(std::span<const TriangleSide> sides) {
     irregular_edges_.push_back(edge);
 }
 
-/// Records the copies of a triangle. Copies share every edge, so each is recorded at the edge opposite to its largest
-/// vertex.
+/// Records triangles that are listed several times. Copies share all their edges, so each copy is recorded only at the
+/// edge opposite to its largest vertex.
 void Pseudonormals::record_copies(std::span<const TriangleSide> sides) {
     struct Use {
         std::uint32_t opposite;
@@ -231,8 +231,8 @@ int Pseudonormals::side_of_face(std::uint32_t triangle, const Vec3& p) const {
     return orient3d(vertices_[a], vertices_[b], vertices_[c], p);
 }
 
-/// Measured from the nearer end. The component along the edge, which should vanish, then contributes least to the
-/// scalar product.
+/// The offset is measured from the nearer end, because the rounding of its component along the edge is then smallest.
+/// This component should not contribute to the scalar product.
 int Pseudonormals::side_of_edge(std::uint32_t triangle, std::size_t side, const Vec3& p) const {
     const Vec3 from_start = p - vertices_[triangles_[triangle][side]];
     const Vec3 from_end = p - vertices_[triangles_[triangle][(side + 1) % 3]];
@@ -243,8 +243,8 @@ int Pseudonormals::side_of_edge(std::uint32_t triangle, std::size_t side, const 
     return beyond < kIrregularEdge ? side_of_two_faces(triangle, beyond, p) : 0;
 }
 
-/// The scalar product with an edge's pseudonormal is the mean of the distances from both faces' planes. These distances
-/// are more accurate, because their signs are exact.
+/// The scalar product with an edge's pseudonormal is the mean of the distances from both faces' planes. The function
+/// uses these distances, because their signs are exact.
 int Pseudonormals::side_of_two_faces(std::uint32_t first, std::uint32_t second, const Vec3& p) const {
     const int first_side = side_of_face(first, p);
     const int second_side = side_of_face(second, p);

@@ -1,12 +1,12 @@
 /// \file
-/// Angle-weighted pseudonormals. They give the side of a mesh on which a point lies from its closest point alone.
+/// Angle-weighted pseudonormals. They determine on which side of a mesh a point is from the closest point of the mesh
+/// alone.
 ///
 /// Method: J. A. Baerentzen, H. Aanaes, "Signed distance computation using the angle weighted pseudonormal", IEEE TVCG
 /// 11(3), 2005. Consider triangles that bound a solid and are wound outward. The scalar product with the offset from
-/// the closest point to p is positive outside and negative inside. This includes edges of four faces or more and nested
-/// shells. Vertices at the same position count as one (0 and -0 are equal). Triangles with collinear corners are left
-/// out.
-/// out.
+/// the closest point to p is positive outside and negative inside. This is also true at edges with four or more faces,
+/// and for nested shells. Vertices at the same position count as one (0 and -0 are equal). Triangles with collinear
+/// corners are left out.
 #pragma once
 
 #include <array>
@@ -22,8 +22,8 @@
 
 namespace ricochet {
 
-/// Pseudonormals of all features of a mesh. Immutable after construction, so they are safe from any number of threads.
-/// All sums run in the order of the triangles.
+/// Pseudonormals of all features of a mesh. Immutable after construction, so any number of threads may use them. All
+/// sums are computed in the order of the triangles.
 class Pseudonormals {
 public:
     /// Builds the pseudonormals. `vertices` and `triangles` must outlive this object. They must be finite and within
@@ -35,17 +35,17 @@ public:
 
     /// Returns the pseudonormal of a triangle's feature, as the weighted mean of unit normals. Its length is at most 1.
     /// It is zero if normals cancel to rounding (kPseudonormalRounding), as in two sheets back to back. Normals also
-    /// cancel for faces that are listed equally often with either winding.
+    /// cancel for a face that is listed equally often with both windings.
     [[nodiscard]] Vec3 of(std::uint32_t triangle, TriangleFeature feature) const;
 
     /// Returns the side on which p lies: +1 on the side of the normals, -1 behind. `nearest` must be the result of
     /// closest_point_on_triangle() for p and that triangle, and no triangle of the mesh may be nearer. Returns 0 on the
-    /// surface, if the pseudonormal is zero, or if rounding would decide. Exact over faces, and over edges if both
-    /// faces agree.
+    /// surface, if the pseudonormal is zero, or if rounding would decide. The result is exact above faces. It is also
+    /// exact above edges for which both faces give the same side.
     [[nodiscard]] int side(std::uint32_t triangle, const ClosestPointOnTriangle& nearest, const Vec3& p) const;
 
     /// Returns true if the feature is an edge of an odd number of triangles, or a vertex at the end of such an edge.
-    /// Sides are undefined there.
+    /// The side is undefined at such features.
     [[nodiscard]] bool is_on_boundary(std::uint32_t triangle, TriangleFeature feature) const;
 
     /// Returns the bytes in use besides the vertices and triangles: about 30 per triangle for a closed mesh.
@@ -83,14 +83,14 @@ private:
 
     std::span<const Vec3> vertices_;
     std::span<const Triangle> triangles_;
-    std::uint32_t first_vertex_ = 0;     ///< the smallest index that a triangle names
-    std::vector<std::uint32_t> welded_;  ///< per vertex from first_vertex_ on: its index among the distinct vertices
-    std::vector<Vec3> at_vertex_;        ///< pseudonormals of the distinct vertices
-    std::vector<std::uint8_t> vertex_is_open_;     ///< 1 for ends of open edges
+    std::uint32_t first_vertex_ = 0;            ///< smallest vertex index of a triangle
+    std::vector<std::uint32_t> welded_;         ///< per vertex from first_vertex_ on: index among the distinct vertices
+    std::vector<Vec3> at_vertex_;               ///< pseudonormals of the distinct vertices
+    std::vector<std::uint8_t> vertex_is_open_;  ///< 1 for ends of open edges
     std::vector<std::array<Neighbour, 3>> sides_;  ///< per triangle: across AB, BC and CA
     std::vector<IrregularEdge> irregular_edges_;
-    /// Triangles that are listed several times, ascending. The value compares this winding with the opposite one: 1 if
-    /// it is more frequent, -1 if less frequent, 0 if equally frequent.
+    /// Triangles that are listed several times, ascending. The value is 1 if the triangle's winding is more frequent
+    /// than the opposite one, -1 if it is less frequent, and 0 if both are equally frequent.
     std::vector<std::pair<std::uint32_t, int>> copies_;
 };
 

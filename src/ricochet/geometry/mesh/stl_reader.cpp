@@ -41,7 +41,7 @@ bool is_keyword(std::string_view word, std::string_view keyword) {
     return true;
 }
 
-/// Returns the bytes behind the last facet of a binary file.
+/// Returns the bytes after the last facet of a binary file.
 std::string_view bytes_behind(const MeshSource& source) {
     const std::uint64_t size = kFirstFacet + kFacetBytes * facets_promised(source);
     return source.bytes.substr(std::min<std::uint64_t>(size, source.bytes.size()));
@@ -57,13 +57,13 @@ public:
         close_face(mesh_);
         names_.record(mesh_);
     }
-    /// Sets the solid's name for the facets that follow.
+    /// Sets the name of the solid for the next facets.
     void set_solid(const std::string& name) { names_.names().group = name; }
     [[nodiscard]] std::size_t corners() const { return mesh_.corners.size(); }
     void reserve(std::size_t facets) {
         mesh_.corners.reserve(3 * facets);
         mesh_.face_offsets.reserve(facets + 1);
-        welder_.reserve(facets / 2 + 2);  // for a closed surface, by Euler's formula; others grow
+        welder_.reserve(facets / 2 + 2);  // enough for a closed surface, by Euler's formula; grows for others
     }
     ParsedMesh finish(std::string format) {
         const WeldReport weld{mesh_.corners.size(), mesh_.vertices.size()};

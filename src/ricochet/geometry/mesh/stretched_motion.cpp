@@ -16,8 +16,9 @@
 namespace ricochet {
 namespace {
 
-/// Distance from two keys at which bounds are taken, as a fraction of the time between them. The bounds then exclude
-/// the neighbouring intervals. Local: the bounds of one interval hold at both positions.
+/// Distance from both keys of an interval at which the range of bounds begins and ends, as a fraction of the interval.
+/// The bounds then exclude the neighbouring intervals. Local: the bounds of one interval are valid on both sides of
+/// this distance.
 constexpr double kInside = 1e-9;
 
 [[noreturn]] void refuse(const std::string& what) { throw InputError("scale that changes in time: " + what); }
@@ -50,7 +51,7 @@ void require_size(const std::vector<const KeyedCurve<Vec3>*>& all, double time) 
     }
 }
 
-/// Motion of a mesh, with the number of keys that it needs.
+/// Positions of a scaled mesh, and the number of keys that its motion needs.
 class Stretching {
 public:
     Stretching(std::span<const Vec3> vertices, const FrameTree& frames, std::size_t frame)

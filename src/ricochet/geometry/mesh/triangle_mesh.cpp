@@ -78,7 +78,7 @@ double surface_area(const TriangleMesh& mesh) {
 double signed_volume(const TriangleMesh& mesh) {
     require_corners(mesh);
     if (mesh.triangles.empty()) return 0.0;
-    // Relative to a point of the mesh, so that a distant mesh does not cause cancellation.
+    // The volume is computed relative to a point of the mesh, because a distant origin would cause cancellation.
     const Vec3 origin = mesh.vertices[mesh.triangles.front()[0]];
     double six_volumes = 0.0;
     for (const Triangle& t : mesh.triangles) {

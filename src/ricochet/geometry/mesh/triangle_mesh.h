@@ -1,5 +1,6 @@
 /// \file
-/// Index-list meshes. Particles collide with the index list, and half-edge topology is derived from it.
+/// Meshes as lists of vertex indices. Particles collide with these triangles, and the half-edge topology is derived
+/// from them.
 #pragma once
 
 #include <array>
@@ -25,7 +26,7 @@ struct TriangleMesh {
 /// The names under which a file lists a face, as indices into PolygonMesh::group_names. 0 means no name.
 struct FaceGroup {
     std::uint32_t material = 0;  ///< of `usemtl`
-    std::uint32_t group = 0;     ///< of `g`, with all its names as written
+    std::uint32_t group = 0;     ///< of `g`: the whole line as written
     std::uint32_t object = 0;    ///< of `o`
 
     bool operator==(const FaceGroup&) const = default;
@@ -39,13 +40,13 @@ struct PolygonMesh {
         face_offsets;                    ///< face f has corners [face_offsets[f], face_offsets[f + 1]); size faces + 1
     std::vector<std::uint32_t> corners;  ///< vertex index of every corner
     std::vector<std::uint32_t> face_groups;  ///< index into groups per face; empty if the file names no groups
-    std::vector<FaceGroup> groups;           ///< the combinations of names that faces have, in order of first use
-    std::vector<std::string> group_names;    ///< the names, each once; the first is empty
+    std::vector<FaceGroup> groups;           ///< combinations of names, in order of first use
+    std::vector<std::string> group_names;    ///< all names without repetition; the first is empty
 
     [[nodiscard]] std::size_t face_count() const { return face_offsets.empty() ? 0 : face_offsets.size() - 1; }
 };
 
-/// Throws InputError if a triangle's corner is not one of the vertices. The functions below throw it too.
+/// Throws InputError if a triangle has an index outside the vertex list. The functions below throw it too.
 void require_corners(const TriangleMesh& mesh);
 /// Returns the box of the vertices that triangles use. It is empty for a mesh without triangles.
 [[nodiscard]] Box3 bounds(const TriangleMesh& mesh);
@@ -56,8 +57,8 @@ void require_corners(const TriangleMesh& mesh);
 [[nodiscard]] double signed_volume(const TriangleMesh& mesh);
 
 /// Returns the mesh in world coordinates. Coordinates below 2^-287 become zero. A mirroring placement reverses the
-/// winding, so that outward stays outward. Triangles and vertices keep their order. Callers refuse results that are not
-/// finite.
+/// winding, so that outward normals stay outward. Triangles and vertices keep their order. Callers refuse results that
+/// are not finite.
 [[nodiscard]] TriangleMesh transformed(const TriangleMesh& mesh, const Placement& placement);
 
 // The functions below throw InputError for lengths that are not finite and above 0.

@@ -30,7 +30,7 @@ bool has_repeats(Corners corners, std::vector<std::uint32_t>& scratch) {
     return std::adjacent_find(scratch.begin(), scratch.end()) != scratch.end();
 }
 
-// Removes equal neighbours around the whole outline, so that each vertex counts once.
+// Removes equal neighbours around the whole outline, so that a vertex repeated in a row counts once.
 void remove_equal_neighbours(std::vector<std::uint32_t>& corners) {
     corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
     while (corners.size() > 1 && corners.front() == corners.back()) corners.pop_back();
@@ -47,7 +47,8 @@ Vec3 newell_normal(const std::vector<Vec3>& vertices, Corners corners) {
     return normal;
 }
 
-// The projection drops the coordinate along which the normal is longest. The other coordinates stay exact.
+// Returns the axis along which the normal is longest. The projection drops this coordinate, and the other coordinates
+// stay exact.
 int dropped_axis(const Vec3& normal) {
     const Vec3 size = abs(normal);
     if (size.z >= size.x && size.z >= size.y) return 2;
@@ -128,8 +129,8 @@ private:
         if (!clean) ++result_.crossing_faces;
     }
 
-    // Cuts along the diagonal whose two triangles turn the same way, or along corner 0's diagonal if both do. Returns
-    // false for a bow-tie.
+    // Cuts a quadrilateral along the diagonal whose two triangles have the same orientation. If this is true of both
+    // diagonals, uses the one at corner 0. Returns false for an outline that crosses itself.
     bool cut_quad() {
         const std::vector<Point2>& p = points_;
         const int along_02 = orient2d(p[0], p[1], p[2]) * orient2d(p[0], p[2], p[3]);
@@ -157,8 +158,8 @@ private:
     const PolygonMesh& mesh_;
     Triangulation result_;
     EarClipper clipper_;
-    std::vector<std::uint32_t> distinct_;  // corners of the face, and scratch memory for finding repeats
-    std::vector<Point2> points_;           // their projections
+    std::vector<std::uint32_t> distinct_;  // corners of the face; also scratch memory for finding repeated ones
+    std::vector<Point2> points_;           // projections of distinct_
     std::vector<Triangle> ears_;           // triangles as indices into distinct_
 };
 

@@ -10,14 +10,14 @@
 
 namespace ricochet {
 
-/// Numbers distinct positions in the order of their first appearance. The comparison is exact: 0 and -0 are equal, and
-/// positions that are only close are different. Positions must be finite.
+/// Numbers distinct positions in the order of their first appearance. The comparison is exact. 0 and -0 are equal, and
+/// positions with any other difference are distinct. Positions must be finite.
 class VertexWelder {
 public:
     /// Makes a welder that appends vertices to the caller's list.
     explicit VertexWelder(std::vector<Vec3>& vertices) : vertices_(vertices) {}
 
-    /// Reserves memory for the given number of distinct positions: 8 to 16 bytes each, besides the list.
+    /// Reserves memory for the given number of distinct positions: 8 to 16 bytes each, in addition to the list.
     void reserve(std::size_t positions);
     /// Returns the index of the position. A new position is appended to the list (with -0 stored as 0).
     [[nodiscard]] std::uint32_t index_of(const Vec3& position);

@@ -1,7 +1,7 @@
 /// \file
-/// Exact and bounded arithmetic for the predicates after their floating-point filters. The first level is double-double
-/// with error bounds. The second is floating-point expansions, stored on the stack. The bounds are derived in
-/// docs/exactness.md.
+/// Exact and bounded arithmetic for the predicates after their floating-point filters. The first level uses
+/// double-double arithmetic with error bounds. The second level uses floating-point expansions, which are stored on the
+/// stack. The bounds are derived in docs/exactness.md.
 ///
 /// Method: J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates",
 /// Discrete & Computational Geometry 18, 1997.
@@ -17,7 +17,7 @@
 namespace ricochet {
 
 /// A number as the exact sum of at most Capacity doubles. The components are in increasing order of magnitude, strongly
-/// non-overlapping and nonzero. The sum is exact while no component overflows and none has bits below 2^-1074. If an
+/// non-overlapping and nonzero. The sum is exact as long as no component overflows or has bits below 2^-1074. If an
 /// operand is not finite, sums and products are wrong, but they never exceed Capacity components. Only the first `size`
 /// components are initialised.
 template <int Capacity>
@@ -25,7 +25,8 @@ struct Expansion {
     std::array<double, static_cast<std::size_t>(Capacity)> components;
     int size = 0;
 
-    // The components are not initialised: this is an inner loop, and they are written before they are read.
+    // The components are not initialised, because this constructor runs in inner loops and each component is written
+    // before it is read.
     Expansion() {}  // NOLINT(modernize-use-equals-default)
     explicit Expansion(const DoubleDouble& x) {
         static_assert(Capacity >= 2);
@@ -165,7 +166,7 @@ namespace detail {
 using ExactMinor = Expansion<16>;
 using ExactDeterminant = Expansion<192>;
 
-/// Returns a d - b c for differences.
+/// Returns a d - b c exactly.
 inline ExactMinor exact_minor(const DoubleDouble& a, const DoubleDouble& b, const DoubleDouble& c,
                               const DoubleDouble& d) {
     return Expansion<2>(a) * d - Expansion<2>(b) * c;

@@ -16,7 +16,7 @@ struct ExactRatio {
 /// Call it only for the few pairs that rounded quotients cannot order.
 [[nodiscard]] int compare(const ExactRatio& x, const ExactRatio& y);
 
-/// Returns the expansion with the capacity of an exact determinant.
+/// Converts the expansion to the capacity of an exact determinant.
 template <int N>
 [[nodiscard]] detail::ExactDeterminant widened(const Expansion<N>& e) {
     detail::ExactDeterminant wide;

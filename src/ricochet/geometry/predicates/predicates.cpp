@@ -43,8 +43,8 @@ bool in_box(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 bool point_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) { return in_box(p, a, b) && are_collinear(a, b, p); }
 
-/// Returns true if the closed segments have a common point. Their four ends lie in one plane, and the projection along
-/// `axis` is one to one on that plane.
+/// Returns true if the closed segments have a common point. Their four ends must be in one plane, and the projection
+/// along `axis` must be one-to-one on that plane.
 bool coplanar_segments_intersect(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, int axis) {
     const int p_side = orient2d(a, b, p, axis);
     const int q_side = orient2d(a, b, q, axis);
@@ -52,7 +52,7 @@ bool coplanar_segments_intersect(const Vec3& p, const Vec3& q, const Vec3& a, co
     const int a_side = orient2d(p, q, a, axis);
     const int b_side = orient2d(p, q, b, axis);
     if (p_side * q_side < 0 && a_side * b_side < 0) return true;
-    // Otherwise any common point is an end of one of the segments.
+    // In all other cases, any common point is an end of one of the segments.
     return (p_side == 0 && in_box(p, a, b)) || (q_side == 0 && in_box(q, a, b)) || (a_side == 0 && in_box(a, p, q)) ||
            (b_side == 0 && in_box(b, p, q));
 }
@@ -68,8 +68,8 @@ bool segments_intersect(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3&
     return in_box(p, a, b) || in_box(q, a, b) || in_box(a, p, q) || in_box(b, p, q);  // all on one line
 }
 
-/// Returns true if p lies in the closed triangle. p is in the plane of the triangle, whose projection along `axis` has
-/// an area.
+/// Returns true if p is in the closed triangle. p must be in the plane of the triangle, and the projection of the
+/// triangle along `axis` must have an area.
 bool coplanar_point_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
     const int ab = orient2d(a, b, p, axis);
     const int bc = orient2d(b, c, p, axis);
@@ -78,8 +78,8 @@ bool coplanar_point_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, con
     return ab * ca >= 0 && bc * ca >= 0;
 }
 
-/// Returns true if the segment intersects the triangle. Both ends lie in the plane of the triangle, or the triangle has
-/// no area.
+/// Returns true if the segment intersects the triangle. Both ends must be in the plane of the triangle, or the triangle
+/// must have no area.
 bool coplanar_segment_intersects_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
     const int axis = projection_axis(a, b, c);
     if (axis < 0)
@@ -110,8 +110,9 @@ bool are_collinear(const Vec3& a, const Vec3& b, const Vec3& c) { return project
 
 bool detail::segment_intersects_triangle_beyond_filter(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
                                                        const Vec3& c, int p_side, int q_side) {
-    // Sides on which the line pq passes each edge. The line misses the triangle if two sides are strictly opposite.
-    // This is true whatever the sides of p and q are, so cheap filters can reject before any exact computation.
+    // ab, bc and ca are the sides on which the line pq passes each edge. The line misses the triangle if two sides are
+    // strictly opposite. This does not depend on the sides of p and q, so cheap filters can reject a triangle before
+    // any exact computation.
     const Vec3 pa = a - p;
     const Vec3 pb = b - p;
     const Vec3 pc = c - p;

@@ -2,10 +2,10 @@
 /// Exact geometric predicates. The returned sign is always the sign of the real-number expression.
 ///
 /// Method: J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates",
-/// Discrete & Computational Geometry 18, 1997. A floating-point filter with a proven error bound comes first, then
-/// double-double with its own bound, then expansions (docs/exactness.md). The predicates are exact while no product
-/// leaves the range of doubles. This requires coordinates that are multiples of 2^-340 and below 2^300, which
-/// flush_tiny() and the mesh readers ensure.
+/// Discrete & Computational Geometry 18, 1997. Each predicate first uses a floating-point filter with a proven error
+/// bound. If undecided, it uses double-double arithmetic with its own bound, and finally expansions
+/// (docs/exactness.md). The predicates are exact as long as no product leaves the range of doubles. This requires
+/// coordinates that are multiples of 2^-340 and below 2^300, which flush_tiny() and the mesh readers ensure.
 #pragma once
 
 #include <cmath>
@@ -28,7 +28,7 @@ inline constexpr double kLargestExactCoordinate = 0x1p300;
 /// of doubles. Local: a bound that the proof of exactness needs.
 inline constexpr double kSmallestExactCoordinate = 0x1p-287;
 
-/// Replaces components smaller than kSmallestExactCoordinate by zero and returns other components unchanged.
+/// Returns p with components of magnitudes below kSmallestExactCoordinate replaced by zero.
 [[nodiscard]] inline Vec3 flush_tiny(const Vec3& p) {
     const auto flushed = [](double x) { return std::fabs(x) < kSmallestExactCoordinate ? 0.0 : x; };
     return {flushed(p.x), flushed(p.y), flushed(p.z)};
@@ -51,13 +51,13 @@ inline constexpr double kSmallestExactCoordinate = 0x1p-287;
 [[nodiscard]] bool point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Returns the fraction t in [0, 1] at which p + t (q - p) crosses the plane of (a, b, c). The exact orientations of p
-/// and q must differ in sign (one can be zero). The result is within 2 ulp of the exact rational for every shape of
+/// and q must differ in sign (one can be zero). The result is within 2 ulp of the exact value for every shape of
 /// triangle.
 [[nodiscard]] double crossing_fraction(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Returns the unit normal of (a, b, c) by the counter-clockwise rule. Every component is within 2^-51 of the exact
-/// one, also for slender triangles. An axis-aligned triangle gives exactly an axis with positive zeros. The triangle
-/// must not be degenerate.
+/// component, also for slender triangles. The normal of an axis-aligned triangle is exactly an axis, with positive
+/// zeros. The triangle must not be degenerate.
 [[nodiscard]] Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c);
 
 // The filters are inline because they decide nearly every call of the innermost loop.
@@ -99,8 +99,8 @@ inline constexpr double kDeterminantFilter = 0x1.1p-50;
 /// Computes orient3d for points that the filter does not decide.
 [[nodiscard]] int orient3d_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// Computes segment_intersects_triangle unless the filter has put both ends on the same side. p_side and q_side are the
-/// filter's results (0: not decided).
+/// Computes segment_intersects_triangle for a segment whose ends the filter has not found on the same side. p_side and
+/// q_side are the filter's results (0: not decided).
 [[nodiscard]] bool segment_intersects_triangle_beyond_filter(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
                                                              const Vec3& c, int p_side, int q_side);
 

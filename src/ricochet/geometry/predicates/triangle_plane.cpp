@@ -9,8 +9,8 @@ namespace {
 /// doubles.
 bool is_moderate(double x) { return std::fabs(x) > 0x1p-400 && std::fabs(x) < 0x1p400; }
 
-/// Returns the double nearest to x / y, except for a relative error of 2^-100. x is not zero. Large and small numbers
-/// are scaled by powers of two, so that the intermediate products stay inside the range.
+/// Returns x / y rounded to a double, after a relative error of 2^-100. x must not be zero. Large and small numbers are
+/// scaled by powers of two, so that the intermediate products stay in the range of doubles.
 double quotient(const DoubleDouble& x, const DoubleDouble& y) {
     if (is_moderate(x.hi) && is_moderate(y.hi)) return (x / y).hi;
     const int x_exponent = std::ilogb(x.hi);
@@ -66,8 +66,8 @@ const Vec3& TrianglePlane::unit_normal() const {
     if (unit_normal_) return *unit_normal_;
     const Precise& known = precise();
     const BoundedCross& normal = known.normal;
-    // Each component has the error of a product and a subtraction, 10 u^2 of its terms' magnitude. 16 u^2 covers the
-    // rest. Local: an error bound of this arithmetic.
+    // Each component has the error of a product and a subtraction, 10 u^2 of its terms' magnitude. The factor 16 u^2
+    // also covers higher orders. Local: an error bound of this arithmetic.
     constexpr double kError = 16.0 * 0x1p-53 * 0x1p-53;
     const double error = kError * max_abs(normal.magnitude);
     if (error <= 0x1p-60 * max_abs({normal.x.hi, normal.y.hi, normal.z.hi})) {

@@ -9,8 +9,8 @@
 
 namespace ricochet {
 
-/// Predicates of the triangle (a, b, c). Results have the bits of the free functions with the same names. Not
-/// thread-safe, because const functions fill the cache.
+/// Predicates of the triangle (a, b, c). The functions give the same bits as the free functions with the same names.
+/// The class is not thread-safe, because const functions fill the cache.
 class TrianglePlane {
 public:
     TrianglePlane() = default;

@@ -32,8 +32,8 @@ Vec3 in_units(const Ellipsoid& ellipsoid, const Vec3& y) {
             ellipsoid.axes() == 3 ? y.z / ellipsoid.half_axis(2) : 0.0};
 }
 
-/// Returns true if the hull is inside the shape by at least `margin`. The map to the unit ball stretches no length by
-/// more than 1 / smallest half axis.
+/// Returns true if the convex hull of the control points is inside the shape by at least `margin`. The map to the unit
+/// ball stretches no length by more than 1 / smallest half axis.
 bool is_deep_inside(const LocalShape& shape, const ControlPoints& local, double margin) {
     const Ellipsoid& ellipsoid = shape.ellipsoid();
     const double largest = 1.0 - margin / ellipsoid.smallest();
@@ -44,15 +44,15 @@ bool is_deep_inside(const LocalShape& shape, const ControlPoints& local, double 
     });
 }
 
-/// Returns true if the hull is beyond a tangent plane perpendicular to n by at least `margin`.
+/// Returns true if the convex hull is beyond the shape's tangent plane perpendicular to n by at least `margin`.
 bool is_beyond_plane(const LocalShape& shape, const ControlPoints& local, const Vec3& n, double margin) {
     const double height = shape.support(n) + margin * length(n);
     return std::all_of(local.begin(), local.end(), [&](const Vec3& y) { return dot(n, y) > height; });
 }
 
-/// Returns true if the hull is certainly outside the shape. Tests the planes of the caps and a plane that separates the
-/// path's chord from the side. In coordinates in which the shape is the unit ball, this plane passes through the
-/// chord's point nearest to the centre.
+/// Returns true if the convex hull is certainly outside the shape. Tests the planes of the caps and a tangent plane
+/// that can separate the path's chord from the side. In coordinates in which the shape is the unit ball, the normal of
+/// this plane points to the chord's point nearest to the centre.
 bool is_far_outside(const LocalShape& shape, const ControlPoints& local, double margin) {
     if (shape.is_capped() &&
         (is_beyond_plane(shape, local, {0, 0, 1}, margin) || is_beyond_plane(shape, local, {0, 0, -1}, margin))) {

@@ -16,9 +16,9 @@ constexpr double kEqualAxes = 0x1p-49;
 /// pole and finally quadratically. At most a dozen steps were observed.
 constexpr int kMaxSteps = 60;
 
-/// Errors of a distance, relative to the distance and, away from the surface, relative to the size of shape and
-/// position. Both are four times the largest error observed in 40 000 random cases. Local: an error bound of this
-/// arithmetic.
+/// Errors of a distance. The first one is relative to the distance. The second one applies away from the surface, and
+/// is relative to the size of the shape and of the position. Both are four times the largest error observed in 40 000
+/// random cases. Local: an error bound of this arithmetic.
 constexpr double kRelativeError = 0x1p-48;
 constexpr double kErrorOfSize = 0x1p-50;
 
@@ -145,8 +145,8 @@ double Ellipsoid::distance_error(double distance, const Vec3& y) const {
 
 /// Solves for sigma of the closest point. With t = distance / |gradient at the point|, the point is x_i = y_i a_i^2 /
 /// (a_i^2 + t). Let sigma = 1 + t / smallest^2 and b_i = |y_i| a_i / smallest^2. The point lies on the surface if sum
-/// (b_i / (excess_i + sigma))^2 = 1. The function returns the largest root, which is >= 0. A root of 0 means the medial
-/// axis, and it exists only if b vanishes along the smallest axes.
+/// (b_i / (excess_i + sigma))^2 = 1. The function returns the largest root, which is >= 0. A root of 0 means that y is
+/// on the medial axis. This is possible only if b vanishes along the smallest axes.
 double Ellipsoid::sigma_of(const std::array<double, 3>& y) const {
     std::array<double, 3> b{};
     double sum = 0.0;
@@ -178,7 +178,7 @@ double Ellipsoid::sigma_of(const std::array<double, 3>& y) const {
 }
 
 /// Makes two steps of Newton's method on value - sum (y_i / a_i)^2 (1 - (1 + tau_i)^-2) = 0 with tau_i = tau / ratio_i.
-/// The form has no cancellation for small tau, so tau becomes accurate relative to itself.
+/// This form has no cancellation for small tau, so the relative error of tau is small.
 double Ellipsoid::polished(double tau, const std::array<double, 3>& y, double value) const {
     for (int step = 0; step < 2; ++step) {
         double residual = value;
@@ -203,7 +203,7 @@ ShapePoint Ellipsoid::closest_point(const PreciseVec3& y) const {
     const double height = value(y).hi;
     if (sigma > 0.5 && height < 1.0) tau = polished(tau, coordinates, height);
     std::array<double, 3> point = coordinates;
-    double rest = 1.0;  // of sum (x_i / a_i)^2, for the smallest axis if y has no component along it
+    double rest = 1.0;  // remainder of sum (x_i / a_i)^2 = 1, for the smallest axis if y has no component along it
     for (size_t i = 0; i < axes_; ++i) {
         if (sigma == 0.0 && excess_[i] == 0.0) continue;
         // Uses sigma deep inside and tau near the surface, because neither form has cancellation there.

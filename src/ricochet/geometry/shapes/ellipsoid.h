@@ -1,6 +1,6 @@
 /// \file
-/// Ellipsoids and endless elliptic cylinders in their own frame, centred at the origin and aligned with the axes. They
-/// provide the side of a point, the nearest point, and a function along a path that is zero on the surface. Pure
+/// Ellipsoids and infinite elliptic cylinders in their own frame, centred at the origin and aligned with the axes. The
+/// class computes the side of a point, the nearest point, and a function along a path that is zero on the surface. Pure
 /// geometry.
 #pragma once
 
@@ -40,7 +40,7 @@ struct ShapePoint {
     bool on_rim = false;  ///< on the edge between a cap and the side
 };
 
-/// An ellipsoid at the origin along the coordinate axes, or, with two axes, an endless elliptic cylinder along z. The
+/// An ellipsoid at the origin along the coordinate axes. With two axes it is an infinite elliptic cylinder along z. The
 /// body is the set with sum over the axes of (y_i / a_i)^2 <= 1. Equal half axes give a circle or sphere, with closed
 /// forms.
 class Ellipsoid {
@@ -63,14 +63,14 @@ public:
     [[nodiscard]] Polynomial value_along(const LocalPath& path, int sign, const DoubleDouble& radius) const;
 
     /// Returns the closest surface point; on the medial axis it is one of several. The distance has a relative error of
-    /// about 2^-50, also next to the surface. At distances above a quarter of the smallest radius of curvature, 2^-52
-    /// of |y| and of the size are added. Inside, the point and the normal are ill-conditioned near the edge of the
-    /// medial axis.
+    /// about 2^-50, also next to the surface. At distances above a quarter of the smallest radius of curvature, an
+    /// error of 2^-52 of |y| and of the size is added. Inside, the point and the normal are ill-conditioned near the
+    /// edge of the medial axis.
     /// Method: D. Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid", Geometric Tools,
     /// 2013 (the equation in sigma). J. More, D. Sorensen, "Computing a Trust Region Step", SIAM J. Sci. Stat. Comput.
     /// 4, 1983 (Newton's method on 1 / norm, which converges from below without overshooting).
     [[nodiscard]] ShapePoint closest_point(const PreciseVec3& y) const;
-    /// Returns a bound on the error of that distance, in m.
+    /// Returns a bound on the error of the distance from closest_point(), in m.
     [[nodiscard]] double distance_error(double distance, const Vec3& y) const;
 
     [[nodiscard]] bool is_round() const { return is_round_; }
@@ -81,7 +81,7 @@ public:
     [[nodiscard]] int axes() const { return static_cast<int>(axes_); }
     /// Returns the outward unit normal at a surface point.
     [[nodiscard]] Vec3 normal_at(const Vec3& y) const;
-    /// Returns the maximum of n . y over the ellipsoid for a vector n. It is the height of the tangent plane
+    /// Returns the maximum of n . y over the ellipsoid for a vector n. This is the height of the tangent plane
     /// perpendicular to n, times |n|.
     [[nodiscard]] double support(const Vec3& n) const;
 

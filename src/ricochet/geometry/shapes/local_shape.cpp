@@ -7,11 +7,11 @@ namespace ricochet {
 namespace {
 
 /// Maximum number of halvings and secants for the nearest point of a segment. The returned bound is valid after any
-/// number of them.
+/// number of steps.
 constexpr int kMaxSegmentSteps = 100;
 
 /// Relative difference between a segment's least distance and its bound at which the search for the closest point ends.
-/// Local: it ends below the rounding of the result.
+/// Local: the difference is below the rounding of the result.
 constexpr double kSegmentError = 0x1p-50;
 
 /// Excess of a squared length at the rounded foot of a perpendicular over its minimum, relative to the squared length
@@ -37,7 +37,7 @@ VectorOf<Scalar> step_of(const LocalSegment<Scalar>& s) {
     return {s.to.x - s.from.x, s.to.y - s.from.y, s.to.z - s.from.z};
 }
 
-/// Returns the fraction at which a height changes from `before` > 0 through zero to `after` < before.
+/// Returns the fraction at which the height is zero while it changes linearly from `before` > 0 to `after` < before.
 template <class Scalar>
 Scalar crossing(const Scalar& before, const Scalar& after) {
     return before / (before - after);
@@ -91,8 +91,8 @@ std::optional<LocalShape::Interval<Scalar>> LocalShape::between_caps(const Local
     return part;
 }
 
-/// Outside, the smallest value() between the caps decides. It is convex along the segment, so an error in the minimum's
-/// position counts only by its square.
+/// For a segment outside, the smallest value() between the caps decides. value() is convex along the segment, so an
+/// error in the minimum's position changes the minimum only by the square of the error.
 template <class Scalar>
 bool LocalShape::is_clear(const LocalSegment<Scalar>& segment) const {
     const int side = side_of_start(segment);
@@ -186,8 +186,8 @@ double LocalShape::distance_of(const PreciseVec3& from, const PreciseVec3& to) c
 }
 
 /// Returns a lower bound on the distance of a segment outside the shape. The distance from a convex body is convex
-/// along the segment, so it lies above its tangents. The root of its slope is bracketed by secants (with the Illinois
-/// rule) until the tangents meet.
+/// along the segment, so it is never below its tangents. Secants (with the Illinois rule) bracket the root of its slope
+/// until the tangents give a tight bound.
 double LocalShape::distance_from_outside(const PreciseVec3& from, const PreciseVec3& to) const {
     struct Tangent {
         double t;

@@ -1,6 +1,6 @@
 /// \file
-/// Ellipsoids and capped cylinders in their own frame, centred at the origin and aligned with the axes. They provide
-/// the side of a point, the nearest point and tests of segments. Pure geometry.
+/// Ellipsoids and capped cylinders in their own frame, centred at the origin and aligned with the axes. The class
+/// computes the side of a point, the nearest point and tests of segments. Pure geometry.
 #pragma once
 
 #include <array>
@@ -40,9 +40,9 @@ public:
     [[nodiscard]] ShapePoint closest_point(const PreciseVec3& y) const;
     /// Returns the closest point of one part, with its rim.
     [[nodiscard]] ShapePoint closest_point_of(ShapePart part, const PreciseVec3& y) const;
-    /// Returns the closest point of one part that is extended beyond its rim to an endless cylinder or a plane.
+    /// Returns the closest point of one part that is extended beyond its rim to an infinite cylinder or a plane.
     [[nodiscard]] ShapePoint closest_point_beyond(ShapePart part, const PreciseVec3& y) const;
-    /// Returns the time that a path stays over a cap, or beside it by at most `slack` (m), in s.
+    /// Returns the time, in s, for which a path stays above a cap, or beside the cap by at most `slack` (m).
     [[nodiscard]] double time_over_cap(const LocalPath& path, double slack) const;
     /// Returns the side and, for a capped shape, the top and the bottom.
     [[nodiscard]] std::span<const ShapePart> parts() const;

@@ -12,13 +12,13 @@ namespace {
 /// Number of samples of a path that starts in overlap. Local: a limit of this search, whose result is checked.
 constexpr int kOverlapSamples = 32;
 
-/// Number of Newton steps before halving takes over. At most seven were needed in tests.
+/// Number of Newton steps after which the interval is halved instead. At most seven were needed in tests.
 constexpr int kMaxNewtonSteps = 16;
 
-/// Number of halvings that reach the last place of a time.
+/// Number of halvings after which an interval of times is as short as the last place of a time.
 constexpr int kMaxHalvings = 60;
 
-/// Fraction of the interval that counts as a long step. Local, because only the cost depends on it.
+/// Smallest fraction of the interval that counts as a long step. Local, because only the cost depends on it.
 constexpr double kLongStep = 0.8;
 
 double middle_of(double low, double high) { return low + 0.5 * (high - low); }
@@ -30,7 +30,7 @@ constexpr int kMaxAdvancementSteps = 200;
 /// before the contact, by a second-order bound that is valid for every convex body. The steps therefore converge
 /// quadratically and skip no contact. The bounds are derived in docs/exactness.md.
 ///
-/// The error of the time is the error of Ellipsoid::closest_point over the normal speed, plus an ulp. After
+/// The error of the time is the error of Ellipsoid::closest_point divided by the normal speed, plus an ulp. After
 /// kMaxAdvancementSteps steps the last safe time is returned. Half a dozen steps are usual, and 30 for a grazing
 /// contact.
 class ConservativeAdvancement {
@@ -43,12 +43,12 @@ public:
     /// Returns true if the ball touches or overlaps the surface at the path's start, to rounding.
     [[nodiscard]] bool starts_in_overlap() const { return is_touching(separation_at(0.0)); }
 
-    /// Returns the first time of contact after `from`, at which the ball must be separated from the surface.
+    /// Returns the first time of contact after `from`. At `from`, the ball must be separated from the surface.
     [[nodiscard]] std::optional<double> first_contact(double from) const {
         return side_ > 0 ? first_from_outside(from) : first_from_inside(from);
     }
 
-    /// The continuation of a start in overlap.
+    /// Result for a path that starts in overlap.
     struct Overlap {
         bool is_stopped = false;  ///< from `time` on the ball approaches while it touches
         double time = 0.0;        ///< otherwise: start of separation, or the duration if the ball never separates
@@ -101,7 +101,7 @@ bool ConservativeAdvancement::approaches(const Separation& separation) const {
     return separation.rate < -kMinApproach * length(path_.velocity(separation.time));
 }
 
-/// Returns the time after separation.time at which the ball touches the tangent plane.
+/// Returns the duration from separation.time until the ball touches the tangent plane.
 std::optional<double> ConservativeAdvancement::time_to_plane(const Separation& separation) const {
     const double left = path_.duration - separation.time;
     const double size = std::max(separation.size, 0.0);
@@ -149,8 +149,9 @@ std::optional<double> ConservativeAdvancement::safe_fraction(const Separation& l
     return x < 1.0 ? std::optional(x) : std::nullopt;
 }
 
-/// Returns a time of contact to rounding between `low`, which is separated, and `overlapping`, which moves into the
-/// surface. Uses Newton's method, and bisection if it leaves the bracket or takes long.
+/// Returns a time of contact, exact to rounding, between `low` and `overlapping`. At `low` the ball is separated, and
+/// at `overlapping` it overlaps the surface. Uses Newton's method, or bisection if Newton's method leaves the bracket
+/// or takes too many steps.
 ConservativeAdvancement::Separation ConservativeAdvancement::contact_between(const Separation& low,
                                                                              Separation& overlapping) const {
     double separated = low.time;
@@ -191,8 +192,8 @@ std::optional<double> ConservativeAdvancement::first_from_inside(double from) co
         const bool advances = safe > low.time;
         if (!advances && low.rate < 0.0) return low.time;
         if (advances) low = separation_at(safe);
-        // After a long step the same end is kept. After a short step half the interval is tried, whose curvature term
-        // is a quarter.
+        // After a long step the interval keeps its end. After a short step the interval is halved, which reduces its
+        // curvature term to a quarter.
         if (high.size <= 0.0 && *part >= kLongStep) continue;
         const double middle = middle_of(low.time, high.time);
         if (!(middle > low.time && middle < high.time)) return low.time;
@@ -226,8 +227,8 @@ ConservativeAdvancement::Overlap ConservativeAdvancement::follow_overlap() const
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// Tolerance for a point on a cap or under it at the rounded time of a crossing: a few ulp. It is a fraction of the
-/// distance travelled and of the shape's size. Local: an error bound of this arithmetic.
+/// Tolerance for the position of a point beside a cap's plane or rim at the rounded time of a crossing: a few ulp. It
+/// is a fraction of the distance travelled and of the shape's size. Local: an error bound of this arithmetic.
 constexpr double kPositionError = 0x1p-50;
 
 double first_time(const Times& times) { return times.count > 0 ? times[0] : kNever; }
@@ -244,8 +245,8 @@ Polynomial height_over_cap(const LocalShape& shape, const LocalPath& path, doubl
     return p;
 }
 
-/// Returns the first time at which a path from inside comes within `inset` of a part. The inset is 0 unless the part is
-/// round or flat.
+/// Returns the first time at which a path from inside comes within `inset` of a part. A nonzero inset requires a part
+/// that is round or flat.
 double first_exit(const LocalShape& shape, const LocalPath& path, ShapePart part, double inset, double from) {
     if (part != ShapePart::side) {
         const double up = part == ShapePart::top ? 1.0 : -1.0;
@@ -258,9 +259,9 @@ double first_exit(const LocalShape& shape, const LocalPath& path, ShapePart part
     return first_time(down_crossings(clearance, from, path.duration));
 }
 
-/// Returns the first time at which a point from outside enters a cylinder. It enters through the side while between the
-/// caps, or through a cap while inside the side. Both of these conditions allow for the rounding of the time, so no
-/// point slips between them at the edge.
+/// Returns the first time at which a point from outside enters a cylinder. The point enters through the side while it
+/// is between the caps, or through a cap while it is inside the side. Both conditions allow for the rounding of the
+/// time, so that no point at the edge fails both.
 double first_entry_of_cylinder(const LocalShape& shape, const LocalPath& path) {
     const Ellipsoid& ellipsoid = shape.ellipsoid();
     const Polynomial side = ellipsoid.value_along(path, +1);
@@ -323,9 +324,9 @@ double first_entry(const LocalShape& shape, const LocalPath& path) {
     return first_time(down_crossings(shape.ellipsoid().value_along(path, +1), 0.0, path.duration));
 }
 
-/// Returns the time of contact of a sphere from outside. A sphere against a sphere is a point against a sphere that is
-/// larger by the radius. A sphere inside a sphere or a circular cylinder is a point against a surface that is smaller
-/// by the radius.
+/// Returns the time of contact of a sphere from outside. A sphere that hits a sphere from outside is equivalent to a
+/// point that hits a sphere larger by the radius. A sphere inside a sphere or a circular cylinder is equivalent to a
+/// point inside a surface smaller by the radius.
 double contact_from_outside(const LocalShape& shape, const LocalPath& path, double radius,
                             const ConservativeAdvancement& advancement, double from) {
     const Ellipsoid& ellipsoid = shape.ellipsoid();
@@ -342,8 +343,8 @@ double contact_from_inside(const LocalShape& shape, const LocalPath& path, Shape
                            : advancement.first_contact(from).value_or(kNever);
 }
 
-/// Returns the first contact of a sphere. contact_after(from) returns the first contact after a time at which the
-/// sphere is separated.
+/// Returns the first contact of a sphere. contact_after(from) returns the first contact after the time `from`, at which
+/// the sphere is separated.
 template <class ContactAfter>
 double contact_of_ball(const ConservativeAdvancement& advancement, double duration, const ContactAfter& contact_after) {
     if (!advancement.starts_in_overlap()) return contact_after(0.0);
@@ -392,7 +393,7 @@ ShapeContacts contacts_of(const LocalShape& shape, const LocalPath& path, double
             if (time != kNever) found.contacts[found.count++] = contact_with_part(shape, path, part, time);
         }
     } else if (!supports.any()) {
-        // A point that starts on the surface is reflected from the side that it heads for, as with planes.
+        // A point that starts on the surface is reflected from the side towards which it moves, as at planes.
         double time = 0.0;
         if (side > 0) time = radius > 0.0 ? contact_of_ball_outside(shape, path, radius) : first_entry(shape, path);
         const int seen_from = side > 0 ? 1 : -heading(shape, path);

@@ -11,28 +11,28 @@
 
 namespace ricochet::bernstein {
 
-/// Relative error bound of a coefficient, with a safety factor. It covers some hundred roundings, each of 2^-53
+/// Relative error bound of a coefficient, with a safety factor. It covers about a hundred roundings, each of 2^-53
 /// (double) or 7 x 2^-106 (double-double). Local: an error bound of this arithmetic.
 template <class Real>
 constexpr double kError = 0x1p-44;
 template <>
 constexpr double kError<DoubleDouble> = 0x1p-92;
 
-/// Smallest certain magnitude of a coefficient. Below it, products may have been rounded to zero, so no sign is
-/// certain. Local: a guard against the end of the range of doubles.
+/// Smallest magnitude of a coefficient with a certain sign. Smaller coefficients may contain products that were rounded
+/// to zero. Local: a guard against the end of the range of doubles.
 inline constexpr double kSmallestCoefficient = 0x1p-900;
 
 inline double high(double x) { return x; }
 inline double high(const DoubleDouble& x) { return x.hi; }
 
-/// A polynomial in Bernstein form. The coefficients `c` are multiplied by the binomials, so products are convolutions.
-/// `size` has the same form and accumulates the magnitudes of all added terms.
+/// A polynomial in Bernstein form. The coefficients `c` are stored multiplied by the binomials, so the product of two
+/// polynomials is a convolution. `size` has the same form and accumulates the magnitudes of all added terms.
 template <class Real, std::size_t Degree>
 struct Polynomial {
     std::array<Real, Degree + 1> c{};
     std::array<double, Degree + 1> size{};
 
-    /// Returns true if all coefficients certainly have this sign, +1 or -1.
+    /// Returns true if all coefficients certainly have the given sign, +1 or -1.
     [[nodiscard]] bool has_sign(int sign) const {
         for (std::size_t k = 0; k <= Degree; ++k) {
             const double value = static_cast<double>(sign) * high(c[k]);

@@ -11,19 +11,20 @@
 namespace ricochet {
 namespace {
 
-/// Relative size below which a cross product has lost too many digits in plain doubles. Local: it selects the
+/// Relative size below which a cross product in plain doubles has lost too many digits. Local: it selects the
 /// precision.
 constexpr double kSlenderNormal = 0x1p-4;
 
-/// Error of a side in plain doubles, relative to the lengths it is computed from: 2^-48 of the normal and some
-/// roundings. Local: an error bound of this arithmetic.
+/// Error of the side of an edge in plain doubles, relative to the lengths from which it is computed: 2^-48 of the
+/// normal and some roundings. Local: an error bound of this arithmetic.
 constexpr double kSideError = 0x1p-47;
 
-/// Slenderness below which barycentric coordinates lose digits in plain doubles. It is twice the triangle's area over
-/// the square of the longest edge, within a factor of 4. Local: it selects the precision.
+/// Slenderness below which barycentric coordinates lose digits in plain doubles. The slenderness is twice the
+/// triangle's area divided by the square of the longest edge, within a factor of 4. Local: it selects the precision.
 constexpr double kSlenderFace = 0x1p-10;
 
-/// Sine of a triangle's angle below which the triangle has no face. Local: an error bound of this arithmetic.
+/// Sine of a triangle's angle below which the triangle counts as having no face. Local: an error bound of this
+/// arithmetic.
 constexpr double kThinnestFace = 0x1p-80;
 
 /// Returns the unit normal within about 2^-48, or nullopt for a degenerate triangle.
@@ -35,13 +36,14 @@ std::optional<Vec3> normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
     return unit_normal(a, b, c);
 }
 
-/// Scales by a power of two that brings the largest component between 1 and 2.
+/// Scales a vector by a power of two that brings the largest component between 1 and 2.
 PreciseVec3 scaled_to_one(const PreciseVec3& u) {
     const double largest = max_abs(rounded(u));
     return largest > 0.0 ? std::ldexp(1.0, -std::ilogb(largest)) * u : u;
 }
 
-/// Returns the side of an edge's upright plane on which p lies, in double-double. +1 is the triangle's side.
+/// Returns the side of p, in double-double, relative to the plane through an edge and parallel to the triangle's
+/// normal. +1 is the triangle's side.
 int precise_side_of_edge(const Vec3& p, const Vec3& from, const Vec3& to, const PreciseVec3& normal) {
     const PreciseVec3 d = scaled_to_one(difference<DoubleDouble>(to, from));
     return sign(dot_of(cross_of(normal, d), scaled_to_one(difference<DoubleDouble>(p, from))));
@@ -51,7 +53,7 @@ int precise_side_of_edge(const Vec3& p, const Vec3& from, const Vec3& to, const 
 std::optional<Vec3> offset_from_face(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const std::optional<Vec3> normal = normal_of(a, b, c);
     if (!normal || !projects_into_triangle(p, a, b, c, *normal)) return std::nullopt;
-    // The height from the nearest vertex has the smallest error.
+    // The height is computed from the nearest vertex, because its error is then smallest.
     const Vec3 pa = p - a, pb = p - b, pc = p - c;
     const double la = length_squared(pa), lb = length_squared(pb), lc = length_squared(pc);
     const Vec3& nearest = la <= lb && la <= lc ? pa : (lb <= lc ? pb : pc);
@@ -82,8 +84,8 @@ ClosestPointOnTriangle closest_point_on_edge(const Vec3& p, const Edge& e) {
     return {point, s.offset, squared, e.edge};
 }
 
-/// Returns the weights of a point inside the face. Lengths are first divided by the longest, so that no product leaves
-/// the range.
+/// Returns the weights of a point inside the face. Lengths are first divided by the longest one, so that no product
+/// leaves the range of doubles.
 Vec3 face_weights(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const double longest = std::max({max_abs(b - a), max_abs(c - b), max_abs(a - c)});
     const double scale = std::ldexp(1.0, -std::ilogb(longest));
@@ -109,7 +111,7 @@ Vec3 face_weights(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
 /// the direction's length and a division give about ten times 2^-53. Local: an error bound of this arithmetic.
 constexpr double kProjectionError = 0x1p-49;
 
-/// Length below which a direction loses digits when it is squared, in m. Local: a guard against the end of the range of
+/// Length, in m, below which the square of a direction loses digits. Local: a guard against the end of the range of
 /// doubles.
 constexpr double kShortest = 0x1p-400;
 
@@ -132,13 +134,13 @@ bool projects_into_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
     if (is_certain) return true;
     const PreciseVec3 precise =
         cross_of(scaled_to_one(difference<DoubleDouble>(b, a)), scaled_to_one(difference<DoubleDouble>(c, a)));
-    // In a thinner triangle, the distances of edges and face differ by far less than rounding.
+    // In a thinner triangle, the distances from edges and face differ by far less than rounding.
     if (max_abs(rounded(precise)) < kThinnestFace) return false;
     return precise_side_of_edge(p, a, b, precise) >= 0 && precise_side_of_edge(p, b, c, precise) >= 0 &&
            precise_side_of_edge(p, c, a, precise) >= 0;
 }
 
-// The fraction is measured from the nearer end, so that the offset does not cancel.
+// The fraction is measured from the nearer end to avoid cancellation in the offset.
 ClosestPointOnSegment closest_point_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
     const Vec3 d = b - a;
     const double squared = length_squared(d);
@@ -185,7 +187,8 @@ Vec3 barycentric_coordinates(const ClosestPointOnTriangle& nearest, const Vec3& 
             break;
     }
     const Vec3 weights = face_weights(nearest.point, a, b, c);
-    // A triangle that is a line to rounding has no accurate weights. The weights on an edge are then nearer.
+    // A triangle that rounding cannot distinguish from a line has no accurate weights. The weights of a point on an
+    // edge then reproduce the nearest point better.
     const std::array<Vec3, 4> candidates{
         Vec3{1.0 - along(a, b), along(a, b), 0}, Vec3{0, 1.0 - along(b, c), along(b, c)},
         Vec3{along(c, a), 0, 1.0 - along(c, a)}, weights / (weights.x + weights.y + weights.z)};
@@ -194,9 +197,9 @@ Vec3 barycentric_coordinates(const ClosestPointOnTriangle& nearest, const Vec3& 
                              [&](const Vec3& v, const Vec3& w) { return miss(v) < miss(w); });
 }
 
-// The smallest distance is either that of an end from the other segment or that of two inner points on the common
-// perpendicular. For almost parallel segments the inner points are ill-conditioned. Even then the result is the
-// distance of two points of the segments, and the ends are equally near to rounding.
+// The smallest distance is either the distance of an end from the other segment, or that of two inner points on the
+// common perpendicular. For almost parallel segments the inner points are ill-conditioned. The result is still the
+// distance of two points of the segments. The distances of the ends then exceed the smallest one only by rounding.
 double squared_distance_of_segments(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
     const double least = std::min({length_squared(closest_point_on_segment(p, a, b).offset),
                                    length_squared(closest_point_on_segment(q, a, b).offset),
@@ -218,8 +221,8 @@ double squared_distance_of_segment_from_triangle(const Vec3& p, const Vec3& q, c
                      squared_distance_of_segments(p, q, b, c), squared_distance_of_segments(p, q, c, a)});
 }
 
-// The regions of the triangle's plane are found from the signs of dot products and of barycentric coordinates (Ericson,
-// section 5.1.5).
+// The signs of dot products and of barycentric coordinates select the region of the triangle's plane (Ericson, section
+// 5.1.5).
 Vec3 separating_direction(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 ab = b - a;
     const Vec3 ac = c - a;

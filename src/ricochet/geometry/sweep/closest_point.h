@@ -2,7 +2,7 @@
 /// Closest points and distances of points, segments and triangles, which can be slender or degenerate.
 ///
 /// Distances have an error of about 2^-50 of the distance between the given points. Differences of coordinates are
-/// taken first, so far from the origin only the returned point has a larger rounding error.
+/// computed first. Far from the origin, only the returned point has a larger rounding error.
 #pragma once
 
 #include "ricochet/core/vec3.h"
@@ -41,14 +41,14 @@ struct ClosestPointOnTriangle {
 [[nodiscard]] bool projects_into_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c,
                                           const Vec3& normal);
 
-/// Returns the nearest point of the closed triangle. If features tie to rounding, the smaller distance decides, then
-/// the rank.
+/// Returns the nearest point of the closed triangle. If several features are nearest within rounding, the smaller
+/// computed distance decides, then the rank.
 [[nodiscard]] ClosestPointOnTriangle closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b,
                                                                const Vec3& c);
 
 /// Returns the barycentric coordinates, for the corners a, b and c, of a point that closest_point_on_triangle() found.
-/// None is negative and their sum is 1. A coordinate is exactly 0 if the point lies on the opposite edge or on a vertex
-/// of that edge. Slender triangles are computed in double-double, so that the coordinates reproduce the point.
+/// No coordinate is negative, and the sum is 1. A coordinate is exactly 0 if the point lies on the opposite edge or on
+/// a vertex of that edge. Slender triangles are computed in double-double, so that the coordinates reproduce the point.
 [[nodiscard]] Vec3 barycentric_coordinates(const ClosestPointOnTriangle& nearest, const Vec3& a, const Vec3& b,
                                            const Vec3& c);
 
@@ -64,10 +64,10 @@ struct ClosestPointOnTriangle {
 /// possibly zero or NaN, if plain doubles are not accurate enough.
 [[nodiscard]] Vec3 separating_direction(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// Returns a certain lower bound on the distance of p from the triangle (a, b, c), in m. The bound is the separation
+/// Returns a guaranteed lower bound on the distance of p from the triangle (a, b, c), in m. The bound is the separation
 /// along the direction (separating axes, e.g. C. Ericson, "Real-Time Collision Detection", Morgan Kaufmann 2005,
-/// section 5.2.1). It is negative or NaN if the direction does not separate. All points of a segment are at least as
-/// far away as the smaller bound of its ends.
+/// section 5.2.1). It is negative or NaN if the direction does not separate p from the triangle. The smaller bound of
+/// two ends applies to all points of the segment between them.
 [[nodiscard]] double distance_lower_bound(const Vec3& direction, const Vec3& p, const Vec3& a, const Vec3& b,
                                           const Vec3& c);
 

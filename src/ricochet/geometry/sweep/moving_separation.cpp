@@ -16,22 +16,23 @@ namespace {
 
 using namespace bernstein;
 
-/// Number of intervals of one pair that are tested before its separation counts as not proved. Each contact takes about
-/// 2 for every halving of the gap that a single polynomial does not resolve. Local, because only the cost depends on
-/// it.
+/// Number of intervals of one pair that are tested before its separation counts as not proved. A contact takes about 2
+/// intervals for every halving of the gap that a single polynomial does not resolve. Local, because only the cost
+/// depends on it.
 constexpr int kMostSeparationPieces = 512;
 
-/// Maximum number of halvings of the time, down to rounding: for a certificate and for a search. Local: it ends below
+/// Maximum number of halvings of the time, for a certificate and for a search. Local: the last interval is shorter than
 /// the rounding of the result.
 constexpr int kDeepestProof = 40;
 constexpr int kDeepestSearch = 50;
 
-/// Number of halvings after which a change of sign is taken for the first one. Local, because the certificate decides.
+/// Number of halvings after which a change of sign in an interval counts as the first one. Local, because the
+/// certificate decides.
 constexpr int kShallowRoot = 3;
 
 /// Number of halvings after which the search samples the gap. An interval with a gap at both ends and in the middle
-/// then counts as free, if these samples suffice. Certificates find any curved motion in between. Local, because the
-/// certificate decides.
+/// then counts as free, if these samples suffice. Certificates detect contacts by curved motion between the samples.
+/// Local, because the certificate decides.
 constexpr int kSampledSearch = 6;
 
 /// Returns the offset of two points that both move along lines, over an interval [s, t] of the time.
@@ -60,7 +61,7 @@ public:
     Piece(const Vector<Real, Degree>& w, const Vector<Real, 1>& u, const Vector<Real, 1>& v, double radius)
         : w_(w), u_(u), v_(v), radius_(radius) {}
 
-    /// Returns true if the polynomials of a feature prove the interval free. The feature is the nearest one at
+    /// Returns true if the polynomials of a feature prove that the interval is free. feature: the nearest one at
     /// mid-time.
     [[nodiscard]] bool is_free_of(TriangleFeature feature) {
         normal_ = cross(u_, v_);
@@ -84,7 +85,7 @@ public:
         return is_beyond_corner(difference(w_, v_), negative(v_), difference(u_, v_)) || is_beyond_bc() ||
                is_beyond_ca() || is_over_face();
     }
-    /// Returns true if a direction, of any length, proves the interval free.
+    /// Returns true if a direction, of any length, proves that the interval is free.
     [[nodiscard]] bool is_free_along(const Vec3& n) const {
         const double least = radius_ * length(n) * (1.0 + kError<double>);
         const Vector<Real, 0> direction{constant(n.x), constant(n.y), constant(n.z)};
@@ -135,9 +136,9 @@ ClosestPointOnTriangle nearest_at(const Vec3& p, const MovingTriangle& triangle,
     return closest_point_on_triangle(p, a.at(s), b.at(s), c.at(s));
 }
 
-/// Returns true if n . (p - a) > radius |n| for all control points p of a path and the corners a at their times. It
-/// then holds in between as well. `rounding` is the relative error of the points' coordinates. It is zero for a line
-/// with exact points.
+/// Returns true if n . (p - a) > radius |n| for all control points p of a path and the corners a at their times. The
+/// inequality then also holds between these times. `rounding` is the relative error of the points' coordinates, which
+/// is zero for a line with exact points.
 template <class Points>
 bool are_beyond(const Points& control, double rounding, double radius, const MovingTriangle& triangle) {
     const auto& [a, b, c] = triangle.corners;
@@ -158,7 +159,7 @@ bool are_beyond(const Points& control, double rounding, double radius, const Mov
     return true;
 }
 
-/// The proof for a point that moves along a line.
+/// Proof of separation for a point that moves along a line.
 class Proof {
 public:
     Proof(const MovingPoint& point, double radius, const MovingTriangle& triangle)
@@ -172,8 +173,9 @@ public:
     }
 
 private:
-    /// Returns true if the bodies intersect, up to rounding, so that further search would not help. A sphere must
-    /// overlap the triangle at an end or in the middle. A point must be over the face at both ends and change sides.
+    /// Returns true if the bodies intersect, up to rounding, so that further halvings cannot prove separation. A sphere
+    /// must overlap the triangle at an end or in the middle. A point must be over the face at both ends and change
+    /// sides.
     [[nodiscard]] bool meet_in(double s, double t) const {
         if (radius_ > 0.0) {
             const auto overlaps = [&](double at) {
@@ -216,7 +218,7 @@ private:
     int pieces_ = 0;
 };
 
-/// The search along a curved path.
+/// Search for the first contact along a curved path.
 class Search {
 public:
     using Counts = std::function<bool(const Meeting&)>;
@@ -292,8 +294,8 @@ private:
         Piece<double, Degree> piece(w, u, v, radius_);
         return piece.is_free_along(nearest.offset) || piece.is_free_of(nearest.feature);
     }
-    /// Returns true if the distance at mid-time exceeds the motion until either end, relative to every corner. It then
-    /// also exceeds the motion relative to every other point of the triangle.
+    /// Returns true if the distance at mid-time exceeds the path length relative to every corner until either end. The
+    /// distance then also exceeds the path length relative to every other point of the triangle.
     template <std::size_t Degree>
     [[nodiscard]] bool is_too_far_to_come(double s, double t, double distance) const {
         const double spare = distance - radius_ - kLeastGap * offset();
@@ -316,8 +318,8 @@ private:
         if (radius_ == 0.0) return signed_distance(position(s), a.at(s), b.at(s), c.at(s));
         return std::sqrt(nearest_at(position(s), triangle_, s).distance_squared) - radius_;
     }
-    /// Returns true if there is a gap between ball and triangle at both ends and in the middle. The gap then exists in
-    /// between too, except for effects of curvature.
+    /// Returns true if there is a gap between ball and triangle at both ends and in the middle. Between these times,
+    /// only curvature of the motion can close the gap.
     [[nodiscard]] bool has_gap(double s, double t) const {
         const double least = radius_ + kLeastGap * offset();
         bool is_over_plane = true;
@@ -338,13 +340,13 @@ private:
             feature = nearest.feature;
         }
         if (radius_ == 0.0 || is_over_plane) return true;
-        // Around an edge or a corner, the gap dips between samples by less than an eighth of the squared path length
-        // over the distance.
+        // Around an edge or a corner, the gap decreases between samples by less than an eighth of the squared path
+        // length divided by the distance.
         const double past = distance_past(s, t, is_one_feature ? feature : std::nullopt);
         return past * past <= 8.0 * radius_ * kLeastGap * offset();
     }
-    /// Returns the ball's path length past the triangle in an interval, in m. If an edge is nearest all the time,
-    /// motion along it does not count.
+    /// Returns the length, in m, of the ball's path relative to the triangle in an interval. If one edge is nearest all
+    /// the time, motion along this edge does not count.
     [[nodiscard]] double distance_past(double s, double t, const std::optional<TriangleFeature>& nearest) const {
         const Vec3 moved = position(t) - position(s);
         const auto& corners = triangle_.corners;
@@ -359,7 +361,7 @@ private:
         }
         return past;
     }
-    /// Returns the contact offset here, in m.
+    /// Returns the contact offset, in m, at the largest coordinate of the path's ends.
     [[nodiscard]] double offset() const {
         return contact_offset({std::max(max_abs(path_.c[0]), max_abs(path_.end)), 0.0, 0.0});
     }

@@ -1,7 +1,7 @@
 /// \file
 /// Tests whether a point or a sphere stays clear of a moving triangle, and finds the first contact. The corners move
-/// along straight lines at constant speed. The tests also cover rotating triangles at gaps near rounding size. There no
-/// single direction separates the bodies for long (moving_triangle.h).
+/// along straight lines at constant speed. The tests also cover rotating triangles at gaps near rounding size. At such
+/// gaps no single direction separates the bodies for long (moving_triangle.h).
 ///
 /// Method: over an interval of time, three quantities are polynomials:
 /// - The height above the triangle's plane.
@@ -9,8 +9,8 @@
 /// - The distance from a corner, with the sides of both its edges.
 ///
 /// A polynomial with Bernstein coefficients of one sign has no root in the interval (G. Farin, "Curves and Surfaces for
-/// CAGD", 5th ed., chapter 5). The signs are certain, because doubles with an error bound come first, then
-/// double-double. An interval that no test proves free is halved.
+/// CAGD", 5th ed., chapter 5). The signs are certain: they are computed in doubles with an error bound and, if
+/// undecided, in double-double. An interval that no test proves free is halved.
 #pragma once
 
 #include <functional>
@@ -26,20 +26,20 @@ namespace ricochet {
 /// 1e75.
 [[nodiscard]] bool stay_apart(const MovingPoint& point, double radius, const MovingTriangle& triangle);
 
-/// Returns true only if the ball on the path stays clear of the moving triangle. The test uses a single direction in
-/// plain doubles: from the triangle to the path at mid-time. False is inconclusive. The test proves most passes beside
-/// a triangle at a tenth of the cost of the other tests here.
+/// Returns true only if the ball on the path never touches the moving triangle. The test uses a single direction in
+/// plain doubles: from the triangle to the path at mid-time. False is inconclusive. The test proves the separation of
+/// most paths beside a triangle, at a tenth of the cost of the other tests.
 [[nodiscard]] bool pass_along_direction(const Path& path, double radius, const MovingTriangle& triangle);
 
-/// A possible contact of a point or sphere on a path with a triangle. It is a contact up to rounding.
+/// A possible contact, up to rounding, of a point or sphere on a path with a triangle.
 struct Meeting {
     double part = 0.0;  ///< time, as a fraction of the path's duration
-    int side = 0;       ///< side of the triangle's plane on which a point is before: +1 is the normal's side
+    int side = 0;       ///< side of the triangle's plane on which a point is before it: +1 is the normal's side
 };
 
-/// Finds the first contact of a point (radius 0) or a sphere on the path with the moving triangle. Only contacts at or
-/// after the fraction `from` of the duration for which counts(meeting) is true are considered. Returns nullopt if there
-/// is none. A sphere does not touch the triangle at the start.
+/// Finds the first contact of a point (radius 0) or a sphere on the path with the moving triangle. Ignores contacts
+/// before the fraction `from` of the duration, and contacts for which counts(meeting) is false. Returns nullopt if
+/// there is no other contact. A sphere must not touch the triangle at the start.
 [[nodiscard]] std::optional<Meeting> first_meeting(const Path& path, double radius, const MovingTriangle& triangle,
                                                    double from, const std::function<bool(const Meeting&)>& counts);
 

@@ -14,9 +14,9 @@ namespace {
 /// Number of halvings of the time, down to the last bit of numbers near 1.
 constexpr int kDeepest = 52;
 
-/// Number of intervals that are tested before the search is given up. Many intervals are needed near a rotating
-/// triangle. The nearer it is, the shorter are the intervals that a single direction can separate. Local, because only
-/// the cost depends on it.
+/// Number of intervals after which the search ends without a result. A search near a rotating triangle needs many
+/// intervals. The smaller the distance, the shorter are the intervals in which a single direction separates the bodies.
+/// Local, because only the cost depends on it.
 constexpr int kMostPieces = 1 << 15;
 
 /// Relative error of a length and of the sum of three products of rounded factors, with a safety factor. Local: an
@@ -24,7 +24,7 @@ constexpr int kMostPieces = 1 << 15;
 constexpr double kLengthError = 0x1p-49;
 constexpr double kDotError = 0x1p-48;
 
-/// The exact difference of a point and a corner at the start and the end of the time.
+/// The exact difference between a point and a corner at time 0 and at time 1.
 struct Arm {
     ExactDifference begin;
     ExactDifference end;
@@ -64,12 +64,13 @@ public:
           triangle_(triangle),
           arms_{Arm(point, triangle.corners[0]), Arm(point, triangle.corners[1]), Arm(point, triangle.corners[2])} {}
 
-    /// Returns true if some direction proves the interval free.
+    /// Returns true if one of the tried directions proves that the interval is free.
     [[nodiscard]] bool is_apart(double s, double t) const {
         const double middle = s + 0.5 * (t - s);
         const ClosestPointOnTriangle nearest = nearest_at(middle);
         if (separates(nearest.offset, s, t)) return true;
-        // Beside an edge, the rounding of a small offset must not tilt the direction towards the edge's ends.
+        // Beside an edge, the direction is made perpendicular to the edge, because the rounding of a small offset could
+        // tilt it towards the edge's ends.
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec3 a = triangle_.corners[k].at(middle);
             const Vec3 edge = triangle_.corners[(k + 1) % 3].at(middle) - a;
@@ -83,7 +84,7 @@ public:
         return false;
     }
 
-    /// Returns the start of the first interval that is not proved free.
+    /// Returns the start of the first interval that is not proved to be free.
     [[nodiscard]] std::optional<double> first_doubt(double s, double t, int depth) {
         if (is_apart(s, t)) return std::nullopt;
         if (depth == kDeepest || ++pieces_ > kMostPieces) return s;
@@ -125,8 +126,8 @@ private:
         return cross(b.at(s) - a.at(s), c.at(s) - a.at(s));
     }
 
-    /// Returns the direction from the nearest point to a sphere's centre. A point lies on the triangle, so its contact
-    /// normal is the triangle's normal, oriented against the point's relative motion.
+    /// Returns the direction from the nearest point to a sphere's centre. A point in contact is on the triangle, so the
+    /// triangle's normal is used, oriented against the point's relative motion.
     [[nodiscard]] Vec3 contact_normal(const MovingContact& contact, const Vec3& offset) const {
         if (radius_ > 0.0 && offset != Vec3{}) return normalized(offset);
         Vec3 motion = point_.to - point_.from;
@@ -135,7 +136,7 @@ private:
             motion -= contact.barycentric[k] * (corner.to - corner.from);
         }
         Vec3 normal = normal_at(contact.time);
-        if (normal == Vec3{}) normal = motion;  // a degenerate triangle has none
+        if (normal == Vec3{}) normal = motion;  // a degenerate triangle has no normal
         if (normal == Vec3{}) return {0, 0, 1};
         return normalized(dot(normal, motion) > 0.0 ? -normal : normal);
     }

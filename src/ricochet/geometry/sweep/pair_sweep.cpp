@@ -19,15 +19,15 @@ DoubleDouble clearance(const Vec3& d, double distance) {
     return dot_of<DoubleDouble>(d, d) - two_product(distance, distance);
 }
 
-/// Relative size of the discriminant below which a meeting counts as grazing. The discriminant is a difference, and
-/// doubles leave it an error of about 2^-48 of the terms. With a smaller value, rounding would decide whether
-/// separating spheres meet again. With a larger value, double-doubles would be used although doubles suffice. Local: it
-/// selects the precision.
+/// Relative size of the discriminant below which a contact counts as grazing. The discriminant is a difference, which
+/// has an error of about 2^-48 of its terms in doubles. With a smaller value, rounding would decide whether separating
+/// spheres touch again. With a larger value, double-doubles would be used although doubles suffice. Local: it selects
+/// the precision.
 constexpr double kGraze = 0x1p-40;
 
-/// Limits for two centres that move relative to each other.
+/// Contact distance and smallest approach speed of two centres.
 struct Approach {
-    double distance;  ///< in m, at which they meet
+    double distance;  ///< of the centres at contact, in m
     double slow;      ///< in m/s; slower approaches do not count
 
     /// Returns true if the spheres touch or overlap and approach each other.
@@ -36,14 +36,14 @@ struct Approach {
     }
 };
 
-/// Returns the time at which |d + u t| falls to the distance, at most `duration`.
+/// Returns the time, at most `duration`, at which |d + u t| decreases to the contact distance.
 std::optional<double> meeting_on_line(const Vec3& d, const Vec3& u, const Approach& approach, double duration) {
     const double b = dot(d, u);
     if (!(b < 0.0)) return std::nullopt;
     const DoubleDouble clear = clearance(d, approach.distance);
     const double c = clear.hi;
     if (c <= 0.0) return approach.is_at_once(d, u, c) ? std::optional(0.0) : std::nullopt;
-    // b^2 - a c loses digits at grazing contacts. |d x u|^2 does not, because b^2 - a |d|^2 = -|d x u|^2.
+    // b^2 - a c loses digits at grazing contacts. The form with |d x u|^2 does not, because b^2 - a |d|^2 = -|d x u|^2.
     const double a = length_squared(u);
     double root = a * approach.distance * approach.distance - length_squared(cross(d, u));
     double speed = -b;

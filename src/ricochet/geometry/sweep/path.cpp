@@ -14,7 +14,7 @@ Vec3 Path::position(double s) const {
 
 Vec3 Path::velocity(double s) const { return c[1] + s * (2.0 * c[2] + (3.0 * s) * c[3]); }
 
-// |p - chord| <= (to - from)^2 / 8 * max |p''|. p'' is linear, so its maximum is at an end.
+// |p - chord| <= (to - from)^2 / 8 * max |p''|. p'' is linear in time, so max |p''| is at an end.
 double Path::sagitta(double from, double to) const {
     if (degree < 2) return 0.0;
     const Vec3 at_from = 2.0 * c[2] + (6.0 * from) * c[3];

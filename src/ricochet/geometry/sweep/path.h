@@ -18,7 +18,7 @@ struct ControlPoints {
 };
 
 /// A path p(s) = c[0] + c[1] s + c[2] s^2 + c[3] s^3 for s in [0, duration], in seconds and metres. Both end points are
-/// stored values: c[0] is the particle's position and `end` becomes its next position.
+/// stored values. c[0] is the particle's position, and `end` becomes its next position.
 struct Path {
     std::array<Vec3, 4> c;  ///< coefficients; c[k] = 0 for k > degree
     int degree = 1;         ///< 1 line, 2 parabola, 3 cubic
@@ -29,7 +29,7 @@ struct Path {
     [[nodiscard]] Vec3 position(double s) const;
     /// Returns the velocity at time s, in m/s.
     [[nodiscard]] Vec3 velocity(double s) const;
-    /// Returns an upper bound on the distance between the path on [from, to] and its chord there, in m.
+    /// Returns an upper bound, in m, on the distance between the path on [from, to] and the chord of this interval.
     [[nodiscard]] double sagitta(double from, double to) const;
     [[nodiscard]] ControlPoints control_points() const;
 };
@@ -43,8 +43,8 @@ struct Path {
 [[nodiscard]] Path line_path(const Vec3& x, const Vec3& v, double duration);
 /// Returns a parabola from x with velocity v and constant acceleration a.
 [[nodiscard]] Path parabola_path(const Vec3& x, const Vec3& v, const Vec3& a, double duration);
-/// Returns the cubic with positions x0, x1 and velocities v0, v1 at its ends (Hermite interpolation). `end` is x1
-/// itself. The degree is lower if leading coefficients vanish exactly. The duration must be positive.
+/// Returns the cubic with positions x0, x1 and velocities v0, v1 at its ends (Hermite interpolation). `end` is exactly
+/// x1. The degree is lower if leading coefficients vanish exactly. The duration must be positive.
 [[nodiscard]] Path hermite_path(const Vec3& x0, const Vec3& v0, const Vec3& x1, const Vec3& v1, double duration);
 
 }  // namespace ricochet

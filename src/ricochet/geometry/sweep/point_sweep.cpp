@@ -26,25 +26,25 @@ struct TriangleSurface {
     }
     [[nodiscard]] bool contains(const Vec3& p) const { return point_on_triangle(p, plane.a(), plane.b(), plane.c()); }
     [[nodiscard]] double fraction(const Vec3& p, const Vec3& q) const { return plane.crossing_fraction(p, q); }
-    /// Returns a lower bound of fraction() in plain doubles, for points on different sides.
+    /// Returns a lower bound of fraction(), computed in plain doubles, for points on different sides.
     [[nodiscard]] double least_fraction(const Vec3& p, const Vec3& q) const;
-    /// Returns true if a direction certainly leads towards the given side, also with the rounded normal.
+    /// Returns true if a direction certainly leads towards the given side, even with the rounded normal.
     [[nodiscard]] bool leads_to(int side, const Vec3& direction) const;
-    /// Returns the fraction at which a segment enters the triangle. The segment lies in the triangle's plane and
-    /// intersects the triangle. The entry is the last crossing into a half plane of an edge (M. Cyrus, J. Beck,
+    /// Returns the fraction at which a segment enters the triangle. The segment must be in the triangle's plane and
+    /// intersect the triangle. The entry is the last crossing into a half plane of an edge (M. Cyrus, J. Beck,
     /// "Generalized Two- and Three-Dimensional Clipping", Computers & Graphics 3, 1978).
     [[nodiscard]] double entry(const Vec3& p, const Vec3& q) const;
 };
 
-// Errors are relative to the largest magnitude. The plain product has an error of 8.5 u of the direction's components,
-// the unit normal 1.1 u and its product with the direction 3 u.
+// Errors are relative to the largest magnitude. The product in plain doubles has an error of 8.5 u of the direction's
+// components. The unit normal has an error of 1.1 u, and its product with the direction adds 3 u.
 bool TriangleSurface::leads_to(int side, const Vec3& direction) const {
     const auto& [normal, magnitude] = plane.cross();
     const Vec3 d = abs(direction);
     return side * dot(normal, direction) > 16.0 * kUnitRoundoff * max_abs(magnitude) * (d.x + d.y + d.z);
 }
 
-// The errors of the heights are within the filter's bound.
+// The errors of both heights are below the filter's bound.
 double TriangleSurface::least_fraction(const Vec3& p, const Vec3& q) const {
     const auto& [normal, magnitude] = plane.cross();
     const Vec3 to_p = p - plane.a();
@@ -107,14 +107,14 @@ std::optional<Crossing> first_crossing_of_line(const Path& path, const Surface& 
     if (before == after && before != 0) return std::nullopt;
     if (!surface.contains_crossing_of(path.c[0], path.end)) return std::nullopt;
     if (before == 0 && after == 0) return Crossing{surface.entry(path.c[0], path.end) * path.duration, 0};
-    // A particle that starts on the surface is reflected from the side that it heads for.
+    // A particle that starts on the surface is reflected from the side towards which it moves.
     if (before == 0) return Crossing{0.0, -after};
     if (surface.least_fraction(path.c[0], path.end) * path.duration > latest) return std::nullopt;
     return Crossing{surface.fraction(path.c[0], path.end) * path.duration, before};
 }
 
-/// Height above the plane along the path, g(s) = g0 + g1 s + g2 s^2. Its sign is chosen so that the start is on the
-/// positive side.
+/// Height above the plane along the path, g(s) = g0 + g1 s + g2 s^2. The sign of the height is chosen so that the start
+/// is on the positive side.
 struct Height {
     double g0;
     double g1;
@@ -138,8 +138,8 @@ struct Roots {
 };
 
 /// Returns the roots in [0, duration]. The number of crossings agrees with the exact sides of the end points. Method:
-/// the q-form of the quadratic formula, which never subtracts like quantities (e.g. Higham, "Accuracy and Stability of
-/// Numerical Algorithms", section 1.8).
+/// the q-form of the quadratic formula, which never subtracts quantities of the same sign (e.g. Higham, "Accuracy and
+/// Stability of Numerical Algorithms", section 1.8).
 Roots crossings_of_parabola(const Height& g, bool ends_on_same_side, double duration) {
     const double d = discriminant(g);
     if (!ends_on_same_side) {
@@ -167,8 +167,8 @@ double first_fall_of_cubic(const Height& g, double g3, double duration) {
     return falls.count > 0 ? falls[0] : duration;
 }
 
-/// Returns true if the path crosses the surface around time s, coming from the given exact side. Two points of the path
-/// that bracket s must lie on different sides, and the segment between them must intersect the surface.
+/// Returns true if the path crosses the surface near time s from the given side. Two points of the path that bracket s
+/// must be exactly on different sides. The segment between them must intersect the surface.
 template <class Surface>
 bool crosses_around(const Path& path, const Surface& surface, const Vec3& normal, double s, int side) {
     const double size = length(path.c[1]) * s + max_abs(path.c[0]) + max_abs(path.c[0] - surface.origin());
@@ -186,8 +186,8 @@ bool crosses_around(const Path& path, const Surface& surface, const Vec3& normal
 }
 
 /// Returns the first crossing of a path that starts in the surface's plane. If the start is on the surface itself, the
-/// particle is reflected from the side that it heads for. Otherwise one root is at the start, and the other is where
-/// the height returns to zero.
+/// particle is reflected from the side towards which it moves. Otherwise one root is at the start, and the height
+/// returns to zero at the other root.
 template <class Surface>
 std::optional<Crossing> first_crossing_from_plane(const Path& path, const Surface& surface) {
     const Vec3 normal = surface.normal();
@@ -209,7 +209,7 @@ std::optional<Crossing> first_crossing_of_parabola(const Path& path, const Surfa
     const int before = surface.side(path.c[0]);
     if (before == 0) return first_crossing_from_plane(path, surface);
     const int after = surface.side(path.end);
-    // The path dips below the surface and comes back only if it begins downwards and curves upwards.
+    // The path crosses the surface's plane and returns only if it starts towards the plane and curves away from it.
     const bool dips = !surface.leads_to(before, path.c[1]) && !surface.leads_to(-before, path.c[2]);
     if (before == after && !dips) return std::nullopt;
     const Vec3 normal = surface.normal();
@@ -224,7 +224,7 @@ std::optional<Crossing> first_crossing_of_parabola(const Path& path, const Surfa
 }
 
 /// Returns the ordered times at which a cubic path passes through the plane. At the ends, the exact sides override the
-/// rounded distance. A crossing that rounding has moved out of the interval is placed at its end.
+/// rounded distance. A crossing that rounding has moved out of the interval is placed at the nearest end.
 template <class Surface>
 Times passes_of_cubic(const Path& path, const Surface& surface, const Vec3& normal, int before, int after) {
     Polynomial distance;
@@ -260,8 +260,8 @@ std::optional<Crossing> crossing_of(const Path& path, const Surface& surface, do
     return path.degree == 2 ? first_crossing_of_parabola(path, surface) : first_crossing_of_cubic(path, surface);
 }
 
-/// Returns true if every control point is above the plane by more than bound(offset from its origin), or every one is
-/// below by more.
+/// Returns true if all control points are on the same side of the plane, each farther than bound(offset). offset: of
+/// the point from the plane's origin.
 template <class Bound>
 bool is_on_one_side(const Path& path, const Vec3& origin, const Vec3& normal, const Bound& bound) {
     int side = 0;
@@ -278,8 +278,8 @@ bool is_on_one_side(const Path& path, const Vec3& origin, const Vec3& normal, co
 
 }  // namespace
 
-// Filter: each difference has a relative error of u, and each product and sum adds another u. 8 u times the sum of
-// magnitudes covers the 5 roundings.
+// The filter uses a bound of 8 u times the sum of magnitudes, which covers 5 roundings. Each difference has a relative
+// error of u, and each product and sum adds another u.
 int side_of(const Plane& plane, const Vec3& p) {
     const Vec3 d = p - plane.point;
     const Vec3 terms{plane.normal.x * d.x, plane.normal.y * d.y, plane.normal.z * d.z};
@@ -296,8 +296,8 @@ bool stays_on_one_side(const Path& path, const Plane& plane, double slack) {
     });
 }
 
-// e1 and e2 are the rounded edges. N = e1 x e2 has a componentwise error of at most 4 u P, where P is |e1| x |e2| with
-// plus signs. N . d adds 4 u |N| . |d|. 16 u P . |d| is twice the sum of both.
+// e1 and e2 are the rounded edges. N = e1 x e2 has a componentwise error of at most 4 u P, and P is |e1| x |e2| with
+// plus signs. N . d adds an error of 4 u |N| . |d|. The bound 16 u P . |d| is twice the sum of both errors.
 bool stays_on_one_side(const Path& path, const TrianglePlane& triangle, double slack) {
     const auto& [normal, magnitude] = triangle.cross();
     const double clearance = slack * (magnitude.x + magnitude.y + magnitude.z);
@@ -318,9 +318,10 @@ std::optional<Crossing> first_crossing(const Path& path, const Plane& plane) {
     return crossing_of(path, PlaneSurface{plane}, std::numeric_limits<double>::infinity());
 }
 
-// The height above an edge is computed as inward . d. Each component of d has an error of u, `inward` of about 4 u, and
-// the sum adds 3 u. 16 u of the sum of all |d| covers them. Near the origin this exceeds a slack in ulps of the
-// coordinates. Without it, both triangles of a seam would already have ended.
+// The height above an edge is computed as inward . d. Each component of d has an error of u, `inward` has an error of
+// about 4 u, and the sum adds 3 u. A bound of 16 u of the sum of all |d| covers these errors. Near the origin this
+// bound exceeds a slack in ulps of the coordinates. Without the bound, a path on a seam could count as outside of both
+// triangles.
 double triangle_exit_time(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal,
                           double slack) {
     const std::array<Vec3, 3> corners{a, b, c};

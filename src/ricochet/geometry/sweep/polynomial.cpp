@@ -9,13 +9,14 @@ namespace {
 
 using std::size_t;
 
-/// Maximum number of evaluations per root. Newton needs about five. Every third step at least halves the bracket, and
-/// 60 halvings reach the last place of the duration. Local: it ends below the rounding of the result.
+/// Maximum number of evaluations per root. Newton's method needs about five. Every third step at least halves the
+/// bracket, and 60 halvings reach the last place of the duration. Local: the search ends below the rounding of the
+/// result.
 constexpr int kMaxRootSteps = 200;
 
 /// Rounding of Bernstein coefficients and of Horner's rule in doubles, relative to the sum of the terms' magnitudes. At
-/// most 7 additions and 9 products act on a term, which gives 16 u. Twice that is used. Local: an error bound of this
-/// arithmetic.
+/// most 7 additions and 9 products act on a term, which gives 16 u. The bound is twice as large. Local: an error bound
+/// of this arithmetic.
 constexpr double kDoubleError = 0x1p-48;
 
 const DoubleDouble& coefficient(const Polynomial& p, int k) { return p.coefficients[static_cast<size_t>(k)]; }
@@ -88,7 +89,7 @@ Variation variation_on(const Polynomial& p, double to) {
 }
 
 /// Returns true if every coefficient exceeds the error after at most `depth` halvings of the interval (de Casteljau).
-/// The halvings average coefficients, and the factor 2 in kDoubleError covers their rounding.
+/// The halvings average coefficients, and the factor 2 in kDoubleError covers the rounding of the averages.
 bool exceeds_error(const Bernstein& bernstein, int depth) {
     const auto n = static_cast<size_t>(bernstein.degree);
     if (!(bernstein.b[0] > bernstein.error) || !(bernstein.b[n] > bernstein.error)) return false;
@@ -104,7 +105,7 @@ bool exceeds_error(const Bernstein& bernstein, int depth) {
     return exceeds_error(early, depth - 1) && exceeds_error(late, depth - 1);
 }
 
-/// Value by Horner's rule in doubles, with a bound on its error.
+/// A value by Horner's rule in doubles, with a bound on its error.
 struct RoundedValue {
     double value;
     double error;
@@ -119,7 +120,7 @@ RoundedValue bounded_value(const Polynomial& p, double s) {
     return {value, kDoubleError * magnitude};
 }
 
-/// Returns a value with a certain sign: in doubles if they suffice, else in double-double.
+/// Returns a value with a certain sign. Computes it in doubles if their error bound allows this, else in double-double.
 double signed_value(const Polynomial& p, double s) {
     const RoundedValue rough = bounded_value(p, s);
     return std::fabs(rough.value) > rough.error ? rough.value : p.value(s).hi;
@@ -127,8 +128,8 @@ double signed_value(const Polynomial& p, double s) {
 
 int sign_of(double x) { return static_cast<int>(x > 0.0) - static_cast<int>(x < 0.0); }
 
-/// Returns the root in [low, high]. p has the given nonzero sign at `low` and the opposite one at `high`. The root may
-/// be off by `enough` seconds.
+/// Returns the root in [low, high]. p must have the given nonzero sign at `low` and the opposite sign at `high`. The
+/// root may have an error of `enough` seconds.
 double bracketed_root(const Polynomial& p, double low, double high, int sign_at_low, double enough) {
     double s = 0.5 * (low + high);
     double width = high - low;
@@ -164,9 +165,9 @@ std::array<DoubleDouble, 3> quadratic_coefficients(const Polynomial& p) {
     return c;
 }
 
-/// Roots of a polynomial of degree 1 or 2: the falling root and the rising root (NaN: none). A double root of a
-/// polynomial that is positive elsewhere counts as falling only. The q-form never subtracts like quantities (e.g.
-/// Higham, "Accuracy and Stability of Numerical Algorithms", section 1.8).
+/// Roots of a polynomial of degree 1 or 2: one at which the polynomial falls, and one at which it rises (NaN: none). A
+/// double root of a polynomial that is positive elsewhere counts as falling only. The q-form never subtracts quantities
+/// of the same sign (e.g. Higham, "Accuracy and Stability of Numerical Algorithms", section 1.8).
 struct QuadraticRoots {
     double falling = std::numeric_limits<double>::quiet_NaN();
     double rising = std::numeric_limits<double>::quiet_NaN();
@@ -189,7 +190,8 @@ QuadraticRoots quadratic_roots(const Polynomial& p) {
         if (a.hi > 0.0) roots.falling = -0.5 * (b / a).hi;
         return roots;
     }
-    // The slope at q / (2 a) is -root for b >= 0, else +root. At 2 c / q it is the opposite.
+    // The slope at the root q / (2 a) is -root for b >= 0, else +root. At the root 2 c / q the slope has the opposite
+    // sign.
     const DoubleDouble root = sqrt(discriminant);
     const bool is_up = b.hi >= 0.0;
     const DoubleDouble q = is_up ? -(b + root) : root - b;
@@ -230,8 +232,8 @@ Pieces pieces_between(double from, const Times& cuts, double to) {
     return pieces;
 }
 
-/// Allowed error of a cut, relative to the duration. p is flat at a cut, so its value changes by the square of the
-/// error. Local: an error bound of this arithmetic.
+/// Allowed error of a cut, relative to the duration. The slope of p is zero at a cut, so the value of p changes only by
+/// the square of the error. Local: an error bound of this arithmetic.
 constexpr double kCutError = 0x1p-45;
 
 Times sign_changes_within(const Polynomial& p, double enough);
@@ -239,7 +241,7 @@ Times sign_changes_within(const Polynomial& p, double enough);
 /// Returns times that cut the duration into pieces on which p is monotone.
 Times monotone_cuts(const Polynomial& p) { return sign_changes_within(p.derivative(), kCutError * p.duration); }
 
-/// Computes sign_changes with roots that may be off by `enough` seconds.
+/// Computes sign_changes() with roots that may have an error of `enough` seconds.
 Times sign_changes_within(const Polynomial& p, double enough) {
     if (p.degree <= 2) return sign_changes_of_quadratic(p);
     const Variation variation = variation_on(p, p.duration);
@@ -248,7 +250,7 @@ Times sign_changes_within(const Polynomial& p, double enough) {
         pieces_between(0.0, variation == Variation::kOneChange ? Times{} : monotone_cuts(p), p.duration);
     Times times;
     int sign = 0;      // the last nonzero sign
-    double low = 0.0;  // and the time at which it was seen
+    double low = 0.0;  // and its time
     for (int i = 0; i < pieces.count; ++i) {
         const double high = pieces[i];
         const int sign_at_high = sign_of(signed_value(p, high));
@@ -286,14 +288,14 @@ Polynomial Polynomial::derivative() const {
 
 Times sign_changes(const Polynomial& p) { return sign_changes_within(p, 0.0); }
 
-// The pieces cover the whole duration, so `from` and `to` select roots without changing them.
+// The pieces cover the whole duration, so `from` and `to` only select roots and do not change their bits.
 Times down_crossings(const Polynomial& p, double from, double to) {
     Times times;
     const auto select = [&](double root) {
         if (root > from && root <= to) times.append(root);
     };
     if (p.degree <= 2) {
-        // A root that was rounded onto an end of the interval may lie on either side of that end.
+        // The exact root of a root that was rounded to an end of the interval can be on either side of that end.
         const double root = quadratic_roots(p).falling;
         if (root == to && p.value(to).hi > 0.0) return times;
         if (root == from && p.value(from).hi > 0.0) times.append(root);

@@ -1,13 +1,14 @@
 /// \file
-/// Polynomials in time and their real roots. They describe distances of a moving point from points, lines and planes.
+/// Polynomials in time and their real roots. The polynomials describe distances of a moving point from points, lines
+/// and planes.
 ///
 /// A squared distance along a cubic path has degree 6. Coefficients are double-doubles, so that a difference of squares
 /// (distance^2 - radius^2) stays accurate near zero. Roots are isolated by the sign variations of the Bernstein
 /// coefficients. If these are inconclusive, the interval is cut at the roots of the derivative. Newton's method refines
 /// each root inside its bracket. Degrees 1 and 2 have closed forms. Sources and error bounds: docs/exactness.md.
 ///
-/// A pair of roots may be missed if the polynomial stays below B = 2^-76 * sum |c_k| duration^k between them. The work
-/// is bounded and needs no heap memory.
+/// A pair of roots may be missed if the polynomial stays below B = 2^-76 * sum |c_k| duration^k between them. The
+/// computing time is bounded, and no heap memory is used.
 #pragma once
 
 #include <array>
@@ -44,21 +45,21 @@ struct Times {
     double operator[](int i) const { return time[static_cast<std::size_t>(i)]; }
 };
 
-/// Returns every time inside (0, duration) at which p changes sign. Each is within two ulp of a root of the given
-/// coefficients. At a multiple root, |p| is below 2^-97 sum |c_k| duration^k instead. Times at which p only touches
-/// zero are not included, and a zero polynomial has none.
+/// Returns every time inside (0, duration) at which p changes sign. Each time is within two ulp of a root of the given
+/// coefficients. For a multiple root, |p| at the time is below 2^-97 sum |c_k| duration^k instead. Times at which p
+/// only touches zero are not included, and a zero polynomial has none.
 [[nodiscard]] Times sign_changes(const Polynomial& p);
 
 /// Returns every time in (from, to] at which p falls from positive values to zero or touches zero, for the rounded
-/// coefficients. Requires 0 <= from <= to <= duration. The times do not depend on where the interval is cut.
+/// coefficients. Requires 0 <= from <= to <= duration. The bits of a time do not depend on `from` and `to`.
 [[nodiscard]] Times down_crossings(const Polynomial& p, double from, double to);
 
 /// Returns true if p is certainly positive on [0, to], by Bernstein coefficients in plain doubles. False is
 /// inconclusive.
 [[nodiscard]] bool is_certainly_positive(const Polynomial& p, double to);
 
-/// A vector of doubles (to cull) or of double-doubles (to decide). With double-doubles, |w|^2 - r^2 has an error of
-/// about 2^-100 |w|^2.
+/// A vector of doubles, for culling, or of double-doubles, for decisions. With double-doubles, |w|^2 - r^2 has an error
+/// of about 2^-100 |w|^2.
 template <class Scalar>
 struct VectorOf {
     Scalar x{};
@@ -114,11 +115,11 @@ template <class Factor>
 }
 [[nodiscard]] inline Vec3 rounded(const PreciseVec3& u) { return {u.x.hi, u.y.hi, u.z.hi}; }
 
-/// Ascending coefficients. Coefficients above the degree are zero.
+/// Coefficients of ascending powers. Coefficients above the degree are zero.
 template <class Scalar>
 using Coefficients = std::array<Scalar, Polynomial::kLargestDegree + 1>;
 
-/// Returns the part of |w|^2 that does not depend on a, with w(s) = p(s) - a for a path p.
+/// Returns the part of |w(s)|^2 that does not depend on the point a, for a path p and w(s) = p(s) - a.
 template <class Scalar>
 [[nodiscard]] Coefficients<Scalar> squared_displacement(const Path& path) {
     Coefficients<Scalar> q{};
@@ -133,7 +134,7 @@ template <class Scalar>
     return q;
 }
 
-/// Returns |w|^2 - radius^2, given squared_displacement and the start w(0).
+/// Returns |w|^2 - radius^2. q: from squared_displacement(). start: w(0).
 template <class Scalar>
 [[nodiscard]] Coefficients<Scalar> point_clearance(const Path& path, Coefficients<Scalar> q,
                                                    const VectorOf<Scalar>& start, double radius) {
@@ -163,8 +164,8 @@ template <class Scalar, class Direction>
     return m;
 }
 
-/// Returns q - m^2: the squared distance from a line, if q is the squared distance from a point on it and m is the
-/// component along the line.
+/// Returns q - m^2: the squared distance from a line. q: squared distance from a point of the line. m: component along
+/// the line.
 template <class Scalar>
 [[nodiscard]] Coefficients<Scalar> line_clearance(Coefficients<Scalar> q, const std::array<Scalar, 4>& m, int degree) {
     for (std::size_t i = 0; i <= static_cast<std::size_t>(degree); ++i) {

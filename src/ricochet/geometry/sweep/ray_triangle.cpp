@@ -14,8 +14,8 @@ using Corners = std::array<Vec3, 3>;
 /// Relative error up to which a determinant in double-double is accurate enough for the position of an intersection.
 /// Local: an error bound of this arithmetic.
 constexpr double kAccuracy = 0x1p-60;
-/// Relative difference above which two quotients of such numbers are certainly in order. Local: an error bound of this
-/// arithmetic.
+/// Relative difference above which the order of two quotients of such determinants is certain. Local: an error bound of
+/// this arithmetic.
 constexpr double kSeparated = 0x1p-48;
 
 const Vec3& corner(const Corners& triangle, std::size_t k) { return triangle[k % 3]; }
@@ -48,8 +48,8 @@ DoubleDouble quotient(const DoubleDouble& x, const DoubleDouble& y) {
     return scaled(scaled(x, -x_exponent) / scaled(y, -y_exponent), x_exponent - y_exponent);
 }
 
-// The next functions handle a ray in the plane of a triangle and a triangle without area. They project along an axis on
-// which no relevant points coincide.
+// The next functions handle rays in the plane of a triangle and triangles without area. They project along an axis for
+// which the projections of relevant points do not coincide.
 
 /// Returns the sign of component `axis` of u x v.
 int cross_sign(const ExactDifference& u, const ExactDifference& v, int axis) {
@@ -66,7 +66,7 @@ std::array<int, 3> sides_of(const Ray& ray, const Corners& triangle, int axis) {
     return sides;
 }
 
-/// Returns an axis along which not all corners project onto the line. Returns 0 if all corners are on the line.
+/// Returns an axis along which not all corners project onto the ray's line. Returns 0 if all corners are on the line.
 int axis_of(const Ray& ray, const Corners& triangle) {
     for (int axis = 0; axis < 3; ++axis) {
         const auto sides = sides_of(ray, triangle, axis);
@@ -81,7 +81,7 @@ int dominant_axis(const Vec3& v) {
     return size.y >= size.z ? 1 : 2;
 }
 
-/// Returns t of a corner on the line, or of an edge that crosses the line, as a quotient.
+/// Returns, as a quotient, t of a corner on the line, or t of the crossing with an edge.
 ExactRatio place_in_plane(const Ray& ray, const Corners& triangle, TriangleFeature feature, int axis) {
     const std::size_t k = number_of(feature);
     const ExactDifference from_origin(triangle[k], ray.origin);
@@ -110,8 +110,8 @@ struct Places {
     }
 };
 
-/// Returns the feature of the triangle on which the ray's origin lies. The origin is strictly between two common points
-/// of the line.
+/// Returns the feature of the triangle on which the ray's origin lies. The origin must be strictly between two common
+/// points of line and triangle.
 TriangleFeature feature_of_origin(const std::array<int, 3>& sides) {
     for (std::size_t k = 0; k < 3; ++k) {
         if (sides[k] == 0 && sides[(k + 1) % 3] == 0) return edge(k);
@@ -119,8 +119,8 @@ TriangleFeature feature_of_origin(const std::array<int, 3>& sides) {
     return TriangleFeature::kFace;
 }
 
-/// Intersects a line with a triangle if all determinants of line and edges are zero. Either the line lies in the
-/// triangle's plane, or the triangle has no area and the line intersects its line.
+/// Intersects a line with a triangle if all determinants of line and edges are zero. Either the line is in the
+/// triangle's plane, or the triangle has no area and the line intersects the line through its corners.
 std::optional<RayMeeting> meet_in_plane(const Ray& ray, const Corners& triangle) {
     const int axis = axis_of(ray, triangle);
     const auto sides = sides_of(ray, triangle, axis);
@@ -229,7 +229,7 @@ std::optional<RayMeeting> meet(const Ray& ray, const Vec3& a, const Vec3& b, con
     };
     if (misses()) return std::nullopt;
     const detail::FilteredCross normal = detail::filtered_cross(b - a, c - a);
-    int height = detail::filtered_sign(normal, oa);  // of the plane above the origin, along the normal
+    int height = detail::filtered_sign(normal, oa);  // sign of the plane's height above the origin, along the normal
     int speed = detail::filtered_sign(normal, d);
     if (are_opposite(height, speed)) return std::nullopt;
     const Corners corners{a, b, c};

@@ -19,11 +19,11 @@ double squared_gap(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     return length_squared(max(Vec3{}, max(lower - p, p - upper)));
 }
 
-/// Ratio of the whole path's slack to that of its remaining part above which culling by the latter pays off. Local,
-/// because only the cost depends on it.
+/// Ratio of the whole path's slack to the slack of the path until latest_, above which culling with the second slack
+/// saves time. Local, because only the cost depends on it.
 constexpr double kWideSlack = 0x1p10;
 
-/// Returns the sign of a height just after the start: that of its first nonzero coefficient.
+/// Returns the sign of a height just after the start, which is the sign of its first nonzero coefficient.
 int side_ahead(const std::array<DoubleDouble, 4>& height) {
     for (const DoubleDouble& coefficient : height) {
         if (coefficient.hi != 0.0) return sign(coefficient);
@@ -60,7 +60,8 @@ void SphereSweep::update_bounds() {
     }
 }
 
-// A contact with an edge can turn out to be one with the face, at a time that differs by rounding.
+// The limit gets a margin, because a contact with an edge can become one with the face at a time that differs by
+// rounding.
 void SphereSweep::shorten_to(double latest) {
     const double until = latest + 2.0 * kCandidateSlack * path_.duration;
     if (!(until < latest_)) return;
@@ -77,7 +78,7 @@ bool SphereSweep::misses_box(const Vec3& a, const Vec3& b, const Vec3& c) const 
            is_apart(a.z, b.z, c.z, lower_.z, upper_.z);
 }
 
-// The error of each height is bounded as in detail::filtered_sign.
+// The bound on the error of each height is that of detail::filtered_sign.
 bool SphereSweep::misses_plane(const detail::FilteredCross& normal, const Vec3& a) const {
     const double longest = length(normal.value) + detail::kDeterminantFilter * length(normal.magnitude);
     const double margin = (1.0 + 0x1p-40) * (radius_ + slack_) * longest;
@@ -117,7 +118,7 @@ double SphereSweep::separating_speed(const Vec3& a, const Vec3& b, const Vec3& c
     return speed > kCandidateSlack * length(path_.c[1]) ? speed : 0.0;
 }
 
-// The offset has an error of some roundings of the largest coordinate.
+// The offset has an error of several roundings of the largest coordinate.
 bool SphereSweep::is_separating_from(const ClosestPointOnTriangle& closest_to_start, const Vec3& a, const Vec3& b,
                                      const Vec3& c) const {
     if (path_.degree > 1) return false;
@@ -176,8 +177,8 @@ std::optional<SphereContact> SphereSweep::first_contact(const Plane& plane) cons
     return contact_at(crossings[0]);
 }
 
-// The distance from a convex set is convex along a line. An end from which the segment recedes therefore decides for
-// the whole segment.
+// The distance from a convex set is convex along a line. If the distance increases from one end of the segment on, this
+// end is the nearest point and decides for the whole segment.
 bool sphere_segment_is_clear(const Vec3& p, const Vec3& q, double radius, double tolerance, const Vec3& a,
                              const Vec3& b, const Vec3& c) {
     const double least = std::max(0.0, radius - tolerance);
@@ -189,7 +190,7 @@ bool sphere_segment_is_clear(const Vec3& p, const Vec3& q, double radius, double
         high.z < lower.z) {
         return true;
     }
-    // The end that seems nearer probably decides.
+    // The end with the smaller lower bound is tested first, because it probably decides.
     const bool from_q = squared_gap(q, a, b, c) <= squared_gap(p, a, b, c);
     const Vec3 away = separating_direction(from_q ? q : p, a, b, c);
     if (distance_lower_bound(away, p, a, b, c) > least && distance_lower_bound(away, q, a, b, c) > least) return true;

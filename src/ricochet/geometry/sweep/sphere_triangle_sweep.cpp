@@ -7,8 +7,8 @@ namespace {
 
 using std::size_t;
 
-/// Rounding of a clearance in plain doubles and of its Bernstein coefficients, relative to the squares it is computed
-/// from. A term has about 20 roundings, and 64 u is used. Local: an error bound of this arithmetic.
+/// Rounding of a clearance in plain doubles and of its Bernstein coefficients, relative to the squares from which it is
+/// computed. A term has about 20 roundings, and 64 u is used. Local: an error bound of this arithmetic.
 constexpr double kClearanceError = 0x1p-47;
 
 TriangleFeature edge_feature(int i) {
@@ -28,7 +28,7 @@ bool is_axis(const Vec3& n) {
     return static_cast<int>(n.x == 0.0) + static_cast<int>(n.y == 0.0) + static_cast<int>(n.z == 0.0) == 2;
 }
 
-/// Returns the power of two that brings x between 1 and 2.
+/// Returns the power of two whose product with x is between 1 and 2.
 double scale_to_one(double x) { return std::ldexp(1.0, -std::ilogb(x)); }
 
 /// Returns (b - a) x (c - a) times a power of two, with a relative error below 2^-60. Returns nullopt for a triangle so
@@ -85,7 +85,8 @@ std::optional<SphereContact> SphereTriangleSweep::first() {
     return contact_at(*best_);
 }
 
-/// Searches face and vertices first. Their contacts shorten the search along the edges, which costs most.
+/// Searches the face and the vertices first. Their contacts shorten the search along the edges, which takes the most
+/// time.
 void SphereTriangleSweep::search(double from) {
     best_.reset();
     limit_ = sphere_.latest_;
@@ -113,8 +114,8 @@ double SphereTriangleSweep::seam_slack(const Vec3& p) const {
     return kSeamSlack * (std::max(max_abs(p), largest_coordinate_) + radius_);
 }
 
-/// Returns the height above the face along a normal of some length, and the radius times that length. An axis is exact
-/// and used directly, so any triangle in an axis-aligned plane gives the same bits.
+/// Returns the height above the face times the length of a normal, and sets the radius times this length. A normal
+/// along an axis is exact and has length 1, so any triangle in an axis-aligned plane gives the same bits.
 std::array<DoubleDouble, 4> SphereTriangleSweep::height_over_face(DoubleDouble& scaled_radius) {
     const PreciseVec3 start = difference<DoubleDouble>(path_.c[0], corners_[0]);
     scaled_radius = DoubleDouble(radius_);
@@ -125,7 +126,7 @@ std::array<DoubleDouble, 4> SphereTriangleSweep::height_over_face(DoubleDouble& 
     return component_along(path_, start, *precise);
 }
 
-/// Returns the times at which the sphere comes down on the face's plane from either side.
+/// Returns the times at which the sphere comes into contact with the face's plane, from either side.
 Times SphereTriangleSweep::face_crossings(const std::array<DoubleDouble, 4>& height, const DoubleDouble& scaled_radius,
                                           double from) const {
     const Times above = down_crossings(face_clearance(path_, height, scaled_radius, +1), from, path_.duration);
@@ -155,7 +156,7 @@ bool SphereTriangleSweep::certainly_passes_beside_face() const {
     return false;
 }
 
-/// Returns true if p projects onto the face, or beside it by no more than the seam slack.
+/// Returns true if p projects onto the face, or at most the seam slack beside it.
 bool SphereTriangleSweep::projects_onto_face(const Vec3& p) {
     const auto& [a, b, c] = corners_;
     if (projects_into_triangle(p, a, b, c, *normal_)) return true;
@@ -168,7 +169,7 @@ bool SphereTriangleSweep::projects_onto_face(const Vec3& p) {
     return false;
 }
 
-/// Returns true if an offset from the triangle deviates from the normal by no more than the slack.
+/// Returns true if an offset from the triangle deviates from the normal by at most the slack.
 bool SphereTriangleSweep::is_along_normal(const Vec3& offset, double slack) const {
     return length_squared(offset - dot(*normal_, offset) * *normal_) <= slack * slack;
 }
@@ -208,7 +209,7 @@ Polynomial SphereTriangleSweep::polynomial(const Coefficients<DoubleDouble>& coe
     return p;
 }
 
-/// Returns nullopt for an edge without length, because its vertices represent it.
+/// Returns nullopt for an edge of length 0, because the tests of its vertices cover it.
 std::optional<SphereTriangleSweep::EdgeLine> SphereTriangleSweep::edge_line(int i) const {
     const bool in_order = is_before(corner(i), corner(next(i)));
     const int first = in_order ? i : next(i);
@@ -229,8 +230,8 @@ SphereTriangleSweep::EdgeClearance SphereTriangleSweep::edge_clearance(const Edg
     return {polynomial(line_clearance(around_end, along, path_.degree)), along};
 }
 
-/// Returns true if the path stays beyond one of the edge's ends, or away from its line, until the limit. Uses plain
-/// doubles.
+/// Returns true if, until the limit, the path stays beyond one of the edge's ends or away from the edge's line. Uses
+/// plain doubles.
 bool SphereTriangleSweep::certainly_misses_edge(int i) const {
     const Vec3& origin = corner(i);
     const Vec3 edge = corner(next(i)) - origin;
@@ -333,9 +334,9 @@ Vec3 SphereTriangleSweep::offset_at(const Candidate& candidate) const {
     return rounded(w - dot_of(w, line->direction) * line->direction);
 }
 
-/// Converts a candidate into a contact. A contact with an edge or vertex along the face's normal, to rounding, is
-/// reported as one with the face. It has the face's normal, and the face's time if the sphere reaches the plane at that
-/// time to rounding.
+/// Converts a candidate into a contact. A contact with an edge or vertex whose normal equals the face's normal within
+/// rounding is reported as one with the face. It then has the face's normal. It also has the time of contact with the
+/// face's plane if both times agree within rounding.
 SphereContact SphereTriangleSweep::contact_at(const Candidate& candidate) {
     const Vec3 p = path_.position(candidate.time);
     if (candidate.feature != TriangleFeature::kFace) {

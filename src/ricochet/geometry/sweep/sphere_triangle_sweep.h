@@ -25,12 +25,12 @@ namespace ricochet {
     return face_clearance(path, height, DoubleDouble(radius), side);
 }
 
-/// The continuation of a sphere that starts in overlap.
+/// Result of following a sphere that starts in overlap.
 struct OverlapEnd {
     enum Kind {
-        kStopped,  ///< the distance shrinks from `time` on, while it is at most the radius
-        kFree,     ///< it grows until it exceeds the radius at `time`
-        kNever     ///< it grows, or stays constant, to the end of the path
+        kStopped,  ///< from `time` on the distance decreases, while it is at most the radius
+        kFree,     ///< the distance does not decrease until it exceeds the radius at `time`
+        kNever     ///< the distance grows, or stays constant, to the end of the path
     };
     Kind kind = kNever;
     double time = 0.0;
@@ -61,8 +61,8 @@ private:
 };
 
 /// Follows a path that starts in overlap, at a distance up to `radius` (including its rounding). `cuts` are the ordered
-/// times at which the distance from the surface may have an extremum. The distance is monotone between two cuts, so its
-/// direction in the middle decides. offset_at(p) is the vector from the surface's closest point to p.
+/// times at which the distance from the surface may have an extremum. Between two cuts the distance is monotone, so its
+/// rate in the middle decides. offset_at(p) is the vector from the surface's closest point to p.
 template <class OffsetAt>
 [[nodiscard]] OverlapEnd follow_overlap(const Path& path, double radius, std::span<const double> cuts,
                                         const OffsetAt& offset_at) {
@@ -94,8 +94,8 @@ private:
         double time;
         TriangleFeature feature;
     };
-    /// The line through an edge. It starts at the lexicographically first end, so that triangles that share the edge
-    /// agree to the bit.
+    /// The line through an edge. The line starts at the lexicographically first end, so that triangles that share the
+    /// edge give the same bits.
     struct EdgeLine {
         int first;  ///< corner at which it starts
         PreciseVec3 direction;

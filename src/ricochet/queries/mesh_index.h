@@ -1,6 +1,6 @@
 /// \file
-/// Private: a mesh with the data structures that its queries need. Structures for only some queries are built on first
-/// use.
+/// Private: a mesh with the data structures that its queries need. Structures that only some queries need are built on
+/// first use.
 #pragma once
 
 #include <cstdint>
@@ -23,12 +23,12 @@ namespace ricochet {
 /// Number of queries per block of parallel work.
 inline constexpr std::size_t kQuestionBlock = 256;
 
-/// Mesh with its data structures. Safe from any number of threads.
+/// Mesh with its data structures. Any number of threads may use it.
 class MeshIndex {
 public:
     /// Throws like MeshQueries.
     explicit MeshIndex(TriangleMesh mesh);
-    /// Takes the triangles of another index with new vertices, and keeps the shape of its hierarchy.
+    /// Combines the triangles of another index with new vertices, and keeps the structure of its hierarchy.
     MeshIndex(const MeshIndex& other, std::span<const Vec3> vertices);
 
     struct Corners {
@@ -46,10 +46,10 @@ public:
     }
     [[nodiscard]] const TriangleMesh& mesh() const { return *mesh_; }
     [[nodiscard]] const Box3& box() const { return box_; }
-    /// Returns the hierarchy for spheres up to a radius, in m. There is one for each power of two.
+    /// Returns the hierarchy for spheres up to a radius, in m. There is one hierarchy for each power of two.
     [[nodiscard]] const TriangleBvh& hierarchy(double radius = 0.0) const;
     [[nodiscard]] bool is_closed() const;
-    /// Throws InputError if the mesh is open, or if the rule needs a consistent winding and there is none.
+    /// Throws InputError if the mesh is open, or if the rule needs a consistent winding and the mesh has none.
     [[nodiscard]] const MeshInterior& interior(InsideRule rule) const;
     [[nodiscard]] const std::vector<BoundaryEdge>& boundary() const;
 
@@ -57,7 +57,7 @@ private:
     void finish();
 
     std::shared_ptr<const TriangleMesh> mesh_;
-    std::vector<std::uint8_t> degenerate_;  ///< empty if there are none
+    std::vector<std::uint8_t> degenerate_;  ///< empty if no triangle is degenerate
     Box3 box_;
     TriangleBvh::Clusters clusters_;
     std::unique_ptr<TriangleBvh> for_points_;

@@ -17,22 +17,23 @@
 namespace ricochet {
 namespace {
 
-/// Directions of rays. Half-strips extend in the opposite directions. The directions have few bits, and lie in no plane
-/// of symmetry of a grid.
+/// Directions of rays. Half-strips extend in the opposite directions. The directions have few significant bits, and are
+/// in no plane of symmetry of a grid.
 constexpr std::array<Vec3, 3> kDirections{
     {{0.4375, 0.6171875, 1.0}, {-0.8046875, 1.0, 0.3671875}, {1.0, -0.5703125, -0.7421875}}};
 
 /// Rounding of a determinant of two differences of points and a direction, relative to the product of their lengths:
-/// some 2^-50, with a margin. Local: an error bound of this arithmetic.
+/// about 2^-50, with a margin. Local: an error bound of this arithmetic.
 constexpr double kDeterminantRounding = 0x1p-47;
 
-/// Least sum of the sine and the cosine of a half angle, both scaled by lengths of some 1. Below it, rounding could
-/// change the angle by more than some 2^-30. This happens if the ray passes very near to a vertex of the boundary.
-/// Local: an error bound of this arithmetic.
+/// Least sum of the magnitudes of the sine and the cosine of a half angle, relative to the lengths by which both are
+/// scaled. Below it, rounding could change the angle by more than about 2^-30. This happens if the ray passes very near
+/// to a vertex of the boundary. Local: an error bound of this arithmetic.
 constexpr double kSmallestSine = 0x1p-20;
 
-/// Returns all directed edges, sorted by their ends, with the smaller number in the upper half of the key. index: 1 if
-/// the edge goes from the smaller to the larger number. Edges between equal positions are omitted.
+/// Returns all directed edges, sorted by the numbers of their ends. The key has the smaller number in its upper half,
+/// and the larger one in its lower half. The index is 1 if the edge goes from the smaller to the larger number, else 0.
+/// Edges between equal positions are omitted.
 std::vector<KeyedIndex> directed_edges(const TriangleMesh& mesh, std::vector<Vec3>& positions) {
     VertexWelder welder(positions);
     welder.reserve(mesh.vertices.size());
@@ -53,7 +54,7 @@ std::vector<KeyedIndex> directed_edges(const TriangleMesh& mesh, std::vector<Vec
 }
 
 /// Returns half the solid angle of the half-strip from an edge, seen from the ray's origin. It is positive if the edge
-/// turns to the left about the ray. Returns nothing if the ray passes too near to one of its ends. Formula: A. van
+/// turns to the left about the ray. Returns nullopt if the ray passes too near to one end of the edge. Formula: A. van
 /// Oosterom and J. Strackee, "The Solid Angle of a Plane Triangle", IEEE Trans. Biomed. Eng. 30, 1983.
 std::optional<double> half_angle(const BoundaryEdge& edge, const Ray& ray) {
     const Vec3 a = edge.from - ray.origin;
@@ -72,7 +73,8 @@ std::optional<double> half_angle(const BoundaryEdge& edge, const Ray& ray) {
     return std::atan2(sine, cosine);
 }
 
-/// Returns the winding number around the ray's origin; nothing if the ray passes too near to a vertex of the boundary.
+/// Returns the winding number around the ray's origin, or nullopt if the ray passes too near to a vertex of the
+/// boundary.
 std::optional<double> winding_number(const MeshIndex& mesh, const Ray& ray) {
     double half_angles = 0.0;
     for (const BoundaryEdge& edge : mesh.boundary()) {

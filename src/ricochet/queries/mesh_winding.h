@@ -11,25 +11,26 @@ namespace ricochet {
 
 class MeshIndex;
 
-/// A directed edge that more triangles list in its direction than against it.
+/// A directed edge that more triangles use in its direction than in the opposite direction.
 struct BoundaryEdge {
     Vec3 from;             ///< in m
     Vec3 to;               ///< in m
-    double surplus = 1.0;  ///< triangles that list it in this direction, less the ones that list it in the other
+    double surplus = 1.0;  ///< number of triangles in this direction, less the number in the opposite direction
 };
 
 /// Returns all boundary edges of a mesh. Vertices at equal positions count as one.
 [[nodiscard]] std::vector<BoundaryEdge> boundary_of(const TriangleMesh& mesh);
 
-/// Returns the winding number of the mesh around a point: the fraction of all directions in which its back faces the
-/// point, less the fraction in which its front does. It equals the result of geometry/mesh/mesh_openings.h up to
-/// rounding. Its time grows with the number of boundary edges instead of triangles.
+/// Returns the winding number of the mesh around a point: the fraction of all directions from the point that hit the
+/// back of the mesh, less the fraction that hit its front. The result equals that of geometry/mesh/mesh_openings.h up
+/// to rounding. The time grows with the number of boundary edges instead of triangles.
 ///
 /// Half-strips extend from the boundary edges, opposite to a fixed direction, and close the mesh at infinity. A ray in
-/// that direction meets no half-strip, so its crossings of the mesh add up to the winding number of the closed surface,
-/// exactly. The solid angle of a half-strip is that of a spherical triangle. If the point lies in the plane of a
-/// half-strip, the sign of this angle is decided by the same rule as the crossings. The idea: C. Martens, M.
-/// Bessmeltsev, "One-shot Method for Computing Generalized Winding Numbers", Computer Graphics Forum 44, 2025.
+/// that fixed direction hits no half-strip. The sum of its crossings of the mesh is therefore exactly the winding
+/// number of the closed surface. The solid angle of a half-strip is that of a spherical triangle. If the point is in
+/// the plane of a half-strip, the same rule decides the sign of this angle and the crossings. Source of the idea: C.
+/// Martens, M. Bessmeltsev, "One-shot Method for Computing Generalized Winding Numbers", Computer Graphics Forum 44,
+/// 2025.
 [[nodiscard]] double winding_number(const MeshIndex& mesh, const Vec3& point);
 
 }  // namespace ricochet

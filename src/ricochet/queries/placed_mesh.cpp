@@ -14,7 +14,7 @@ namespace {
 /// Largest relative deviation of a similarity's columns from its scale, see PlacedMesh. Local: a limit of input values.
 constexpr double kSimilarity = 1e-9;
 
-/// Returns the scale of a similarity, or 0 for any other map.
+/// Returns the scale of a similarity, or 0 if the map is not a similarity.
 double scale_of(const AffineMap& map) {
     const double volume = std::fabs(map.determinant());
     const double scale = std::cbrt(volume);
@@ -36,7 +36,7 @@ struct PlacedMesh::LocalRays {
         : origins(placed.local_points(rays.origins, "origins")),
           directions(rays.directions.size()),
           most(placed.local_lengths(rays.most)) {
-        // The length of a direction has no meaning, so the scale is omitted.
+        // The length of a direction has no effect, so each direction is scaled to a largest component of about 1.
         std::transform(rays.directions.begin(), rays.directions.end(), directions.begin(), [&](const Vec3& d) {
             const double largest = max_abs(d);
             return is_finite(d) && largest > 0.0 ? placed.world_from_mesh_.direction_back(d / largest) / placed.scale_

@@ -1,5 +1,5 @@
 /// \file
-/// Queries on a mesh that is placed by a map, without a copy of the mesh.
+/// Queries on a mesh that a map places in the world, without a copy of the mesh.
 #pragma once
 
 #include <cstdint>
@@ -14,16 +14,17 @@
 
 namespace ricochet {
 
-/// A mesh that a similarity places: a rotation or reflection, one scale for all axes, and a translation.
+/// A mesh with a similarity that places it: a rotation or reflection, one scale for all axes, and a translation.
 ///
-/// Queries are mapped into the mesh's own coordinates, and the results are mapped back. Each result is exact for the
-/// mapped and rounded query, as in MeshQueries. The mapping rounds each coordinate by a few units in the last place of
-/// the largest number involved. Triangles keep the order of their corners. So a reflection turns their normals, and
-/// crossings and winding numbers change their sign.
+/// Queries are transformed to the mesh's own coordinates, and results are transformed back. Each result is exact for
+/// the transformed and rounded query, as in MeshQueries. The transformation rounds each coordinate by a few units in
+/// the last place of the largest number involved. Triangles keep the order of their corners. A reflection therefore
+/// inverts their normals, and changes the signs of crossings and winding numbers.
 class PlacedMesh {
 public:
-    /// Shares the mesh. Throws InputError if the map is not finite or not a similarity. Scales may differ, and axes may
-    /// deviate from perpendicular, by at most 1e-9 of the scale. That admits rotations written with ten digits.
+    /// Shares the mesh. Throws InputError if the map is not finite or not a similarity. The scales of the axes may
+    /// differ by at most 1e-9, and the angles between axes may deviate from a right angle by at most 1e-9. These limits
+    /// accept rotations written with ten digits.
     PlacedMesh(const MeshQueries& mesh, const AffineMap& world_from_mesh);
 
     // The queries of MeshQueries, in world coordinates and lengths.

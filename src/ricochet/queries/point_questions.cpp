@@ -23,7 +23,7 @@ struct Nearest {
     ClosestPointOnTriangle point;
 };
 
-/// Order that selects the nearest of several triangles; the same as in SignedDistance.
+/// Returns true if x is selected as the nearest triangle instead of y. SignedDistance uses the same order.
 bool comes_before(const Nearest& x, const Nearest& y) {
     if (x.point.distance_squared != y.point.distance_squared) {
         return x.point.distance_squared < y.point.distance_squared;
@@ -40,21 +40,22 @@ std::optional<Nearest> nearest(const MeshIndex& mesh, const Vec3& p, double with
         const Nearest found{triangle, closest_point_on_triangle(p, a, b, c)};
         if (best && !comes_before(found, *best)) return within;
         best = found;
-        // Rounded up, so that equally near triangles are still visited.
+        // The distance is rounded up, so that equally near triangles are still visited.
         within = std::min(within, std::sqrt(found.point.distance_squared) * (1.0 + 0x1p-40));
         return within;
     });
     return best;
 }
 
-/// Returns the distance of a point from its nearest point. Over a face the distance from the plane is more accurate.
+/// Returns the distance of a point from its nearest point. Above a face it uses the distance from the plane, which is
+/// more accurate.
 double distance(const MeshIndex& mesh, const Nearest& nearest, const Vec3& p) {
     if (nearest.point.feature != TriangleFeature::kFace) return length(nearest.point.offset);
     const auto [a, b, c] = mesh.corners(nearest.triangle);
     return std::fabs(signed_distance(p, a, b, c));
 }
 
-/// Calls answer(i) for every point, in parallel.
+/// Calls answer(i) for every point i, in parallel.
 template <class Answer>
 void for_each_point(std::span<const Vec3> points, const Answer& answer) {
     require_positions(points, "points");

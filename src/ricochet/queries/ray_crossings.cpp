@@ -12,8 +12,8 @@
 namespace ricochet {
 namespace {
 
-/// Fraction by which the segment for the broad phase extends beyond the mesh's box, so that rounding cuts nothing off.
-/// Local, because the exact test decides.
+/// Fraction by which the segment for the broad phase extends beyond the mesh's box, so that rounding removes no part of
+/// the mesh. Local, because the exact test decides.
 constexpr double kBeyond = 0x1p-20;
 
 /// Rounding of the segment's ends, relative to their coordinates. Local: an error bound of this arithmetic.
@@ -27,7 +27,7 @@ struct Candidate {
     MetTriangle met;
 };
 
-/// Part of the ray within reach of the mesh, for the broad phase.
+/// Part of the ray that can reach the mesh, for the broad phase.
 struct Reach {
     double t = 0.0;  ///< parameter of the ray at the end of the tube
     Tube tube;
@@ -60,9 +60,10 @@ bool comes_before(const Ray& ray, const Candidate& x, const Candidate& y) {
     return order != 0 ? order < 0 : x.triangle < y.triangle;
 }
 
-// All hits of a ray. Triangles that share the feature through which the ray passes give one hit.
+// The next functions find all hits of a ray. Triangles that share the feature through which the ray passes give one
+// hit.
 
-/// Feature of a triangle that the ray passes through, and the candidate that it belongs to.
+/// Feature of a triangle through which the ray passes, and the triangle's index among the candidates.
 struct Passed {
     FeatureKey key;
     std::uint32_t candidate;
@@ -98,10 +99,10 @@ DisjointSets join(const std::vector<Candidate>& candidates) {
     return joined;
 }
 
-/// Returns the direction in which the ray crosses a triangle (+1 along its normal), or 0 if it passes beside it. The
-/// ray's origin is moved by an infinitesimal amount along x, and by still smaller ones along y and z. Then the ray
-/// meets neither edges nor vertices. Method: H. Edelsbrunner, E. P. Muecke, "Simulation of Simplicity", ACM
-/// Transactions on Graphics 9, 1990.
+/// Returns the direction in which the moved ray crosses a triangle (+1 along the normal, -1 against it), or 0 if the
+/// ray misses the triangle. The ray's origin is moved by an infinitesimal amount along x, and by still smaller amounts
+/// along y and z. The moved ray hits neither edges nor vertices. Method: H. Edelsbrunner, E. P. Muecke, "Simulation of
+/// Simplicity", ACM Transactions on Graphics 9, 1990.
 int moved_crossing(const Ray& ray, const MetTriangle& met) {
     const RayMeeting& meeting = met.meeting;
     if (meeting.speed == 0) return 0;
@@ -124,7 +125,7 @@ void write_places(const RayQuestion& question, const MeshIndex& mesh, const std:
     std::vector<std::size_t> place_of(candidates.size(), kNone);
     for (std::uint32_t k = 0; k < candidates.size(); ++k) {
         const auto& [triangle, met] = candidates[k];
-        if (mesh.is_degenerate(triangle)) continue;  // a degenerate triangle only joins others
+        if (mesh.is_degenerate(triangle)) continue;  // a degenerate triangle only joins hits of other triangles
         std::size_t& number = place_of[joined.find(k)];
         if (number == kNone) {
             number = crossings.size();
@@ -139,8 +140,8 @@ void write_places(const RayQuestion& question, const MeshIndex& mesh, const std:
 }  // namespace
 
 int moved_side(const Ray& ray, const Vec3& p, const Vec3& q) {
-    // Sign of (p - o) x (q - o) . d with the ray's origin o and direction d. If it is 0, the result is the sign of the
-    // first component of its gradient in o, -(q - p) x d, that is not 0.
+    // Computes the sign of (p - o) x (q - o) . d for the ray's origin o and direction d. If the sign is 0, the first
+    // nonzero component of the gradient with respect to o, -(q - p) x d, decides.
     const ExactDifference u(p, ray.origin);
     const ExactDifference v(q, ray.origin);
     const ExactDifference d(ray.direction, Vec3{});

@@ -13,30 +13,30 @@ namespace ricochet {
 
 class MeshIndex;
 
-/// Ray with a limited range.
+/// Ray with a range.
 struct RayQuestion {
     Ray ray;
     double most = 0.0;  ///< range in m, may be infinite
 
-    /// Returns true if the ray reaches that parameter.
+    /// Returns true if the point of parameter t is within the range.
     [[nodiscard]] bool reaches(const DoubleDouble& t) const {
         return most == std::numeric_limits<double>::infinity() || ray.distance(t) <= most;
     }
 };
 
-/// Hit of the surface on a ray.
+/// Hit of a ray on the surface.
 struct RayCrossing {
     DoubleDouble t;              ///< parameter of the ray
-    std::uint32_t triangle = 0;  ///< smallest index of the triangles that the ray meets first there
+    std::uint32_t triangle = 0;  ///< the first triangle along the ray; of several, the smallest index
     std::int8_t crossing = 0;    ///< see AllMeshHits
-    bool is_in_plane = false;    ///< the ray lies in the planes of all triangles there
+    bool is_in_plane = false;    ///< the ray lies in the planes of all triangles of this hit
 };
 
-/// Returns the first hit.
+/// Returns the first hit, or nullopt if there is none.
 [[nodiscard]] std::optional<RayCrossing> first_crossing_on(const MeshIndex& mesh, const RayQuestion& question);
-/// Returns the sign of the determinant of p - origin, q - origin and the ray's direction. It is +1 if the edge from p
-/// to q turns to the left about the ray. Never 0 for an edge across the ray, because the origin counts as moved by an
-/// infinitesimal amount, as for crossings.
+/// Returns the sign of the determinant of p - origin, q - origin and the ray's direction. The sign is +1 if the edge
+/// from p to q turns to the left about the ray. It is never 0 for an edge that is not parallel to the ray, because the
+/// origin is treated as moved by an infinitesimal amount, as for crossings.
 [[nodiscard]] int moved_side(const Ray& ray, const Vec3& p, const Vec3& q);
 /// Returns true if there is a hit.
 [[nodiscard]] bool hits_anything(const MeshIndex& mesh, const RayQuestion& question);

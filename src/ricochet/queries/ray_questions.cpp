@@ -21,7 +21,7 @@
 namespace ricochet {
 namespace {
 
-/// Number of rays between two polls of the stop request, because a poll costs as much as a short ray.
+/// Number of rays between two calls of poll_loop_stop(), because a call takes as long as a short ray.
 constexpr std::size_t kPollEvery = 16;
 
 void require_rays(const RayBatch& rays) {
@@ -45,7 +45,7 @@ double most_of(const RayBatch& rays, std::size_t i) {
     return rays.most.size() == 1 ? rays.most[0] : rays.most[i];
 }
 
-/// Calls answer(i, ray, most distance) for every ray, in parallel, block by block.
+/// Calls answer(block, i, question) for every ray i, in parallel, block by block.
 template <class Answer>
 void for_each_ray(const RayBatch& rays, const Answer& answer) {
     require_rays(rays);

@@ -1,4 +1,4 @@
-// Sweeps of moving points and spheres, with the mesh at rest or moving.
+// Sweeps of points and spheres against a mesh at rest or a moving mesh.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -85,12 +85,12 @@ Path straight(const Vec3& from, const Vec3& to) {
     return path;
 }
 
-/// Returns the tube for the broad phase: all points within the radius of the path, plus rounding.
+/// Returns the tube for the broad phase: all points within the radius, plus rounding, of the path.
 Tube tube_of(const Vec3& from, const Vec3& to, double radius) {
     return {from, to, radius * (1.0 + kCandidateSlack) + 0x1p-48 * (max_abs(from) + max_abs(to))};
 }
 
-/// Returns the fraction of the path just beyond the contacts found so far.
+/// Returns the fraction of the path just beyond the first contact found so far, or 1 if there is none.
 double limit_of(const std::optional<Contact>& best) {
     return best ? std::min(1.0, best->fraction * (1.0 + 0x1p-40) + 0x1p-60) : 1.0;
 }
@@ -125,10 +125,11 @@ std::optional<Contact> sphere_contact(const MeshIndex& mesh, const TriangleBvh& 
     return best;
 }
 
-/// Number of steps of the path in which an overlapping sphere is tested for separation from a moving triangle.
+/// Number of equal parts of the path at whose ends an overlapping sphere is tested for separation from a moving
+/// triangle.
 constexpr int kLooksForTheWayOut = 64;
 
-/// Returns the rest of a path from a time on, rounded.
+/// Returns the rounded rest of a displacement, from the given fraction on.
 MovingPoint rest_of(const MovingPoint& displacement, double from) { return {displacement.at(from), displacement.to}; }
 
 /// Returns the first contact after the sphere has separated from the triangle.
@@ -141,17 +142,17 @@ std::optional<MovingContact> contact_after_leaving(const MovingPoint& point, dou
         auto contact =
             first_contact(rest_of(point, from), radius, {{rest_of(a, from), rest_of(b, from), rest_of(c, from)}});
         if (!contact) return std::nullopt;
-        if (contact->time == 0.0) continue;  // separated by less than the rounding of the rest
+        if (contact->time == 0.0) continue;  // the separation is smaller than the rounding of the rest
         contact->time = std::min(1.0, from + (1.0 - from) * contact->time);
         return contact;
     }
     return std::nullopt;
 }
 
-/// Returns the contact of a sphere that touches or overlaps the triangle from the start, in the contact `at_start`. The
-/// sphere is stopped at once if the distance shrinks, as beside a triangle at rest (SphereSweep). Otherwise the sphere
-/// is free until it comes nearer to the triangle than at the start, or touches it again after a separation. If the
-/// triangle moves as a whole, the sphere never comes nearer.
+/// Returns the contact of a sphere that touches or overlaps the triangle at the start, in the contact `at_start`. If
+/// the distance decreases, this is a contact at once, as beside a triangle at rest (SphereSweep). Otherwise the contact
+/// is when the sphere comes nearer to the triangle than at the start, or touches it again after a separation. If all
+/// corners of the triangle move equally, the sphere never comes nearer.
 std::optional<MovingContact> contact_from_overlap(const MovingPoint& point, double radius,
                                                   const MovingTriangle& triangle, const MovingContact& at_start) {
     const auto& [a, b, c] = triangle.corners;
@@ -172,7 +173,7 @@ std::optional<MovingContact> contact_from_overlap(const MovingPoint& point, doub
     return sunk;
 }
 
-/// Returns the first contact of a point or a sphere with a triangle if both move.
+/// Returns the first contact of a moving point or sphere with a moving triangle.
 std::optional<MovingContact> meeting_of(const MovingPoint& point, double radius, const MovingTriangle& triangle) {
     const auto contact = first_contact(point, radius, triangle);
     if (!contact || contact->time > 0.0 || radius == 0.0) return contact;

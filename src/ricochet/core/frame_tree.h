@@ -135,7 +135,7 @@ private:
 
     std::vector<FrameDescription> frames_;
     std::vector<std::vector<BodyPath>> paths_;      // one list per frame; empty except for driven frames with paths
-    std::vector<std::vector<std::size_t>> chains_;  // per frame: from the world, or another frame, to itself
+    std::vector<std::vector<std::size_t>> chains_;  // per frame: stored chain of frames that ends with it
     std::vector<bool> is_scaled_;                   // one per frame
 };
 

@@ -242,8 +242,8 @@ Value KeyedCurve<Value>::second_derivative(double time) const {
     return eased + ((6.0 * s - 4.0) / span) * slopes_[k] + ((6.0 * s - 2.0) / span) * slopes_[k + 1];
 }
 
-/// Extends the bounds to include the cubic on a segment. Its derivatives are bounded by bounds of their coefficients
-/// for s from 0 to 1: |6 s (1 - s)| <= 3/2, |6 - 12 s| <= 6, |(1 - s) (1 - 3 s)| <= 1, |6 s - 4| <= 4.
+/// Extends the bounds to include the cubic on a segment. The factors in its derivatives have these bounds for s from 0
+/// to 1: |6 s (1 - s)| <= 3/2, |6 - 12 s| <= 6, |(1 - s) (1 - 3 s)| <= 1, |6 s - 4| <= 4.
 template <class Value>
 void KeyedCurve<Value>::include_segment(std::size_t k, DerivativeBounds& bounds) const {
     const double span = keys_[k + 1].time - keys_[k].time;

@@ -27,7 +27,7 @@ enum class Interpolation {
 
 /// Extrapolation before the first and after the last key.
 enum class CurveEnds {
-    hold,    ///< the value of that key; splines have slope 0 at that key for a continuous derivative
+    hold,    ///< constant, with the value of that key; splines have slope 0 there for a continuous derivative
     repeat,  ///< the keys repeat, and each round begins with the value at the end of the one before; splines continue
              ///< smoothly
 };

@@ -22,8 +22,8 @@ public:
 private:
     struct Entry;
     friend void remove_unfinished_files() noexcept;
-    static Entry* first_;  // head of a list; without a destructor, since the last file may be destroyed after other
-                           // objects
+    // Head of the list. It has no destructor, since the last file may be destroyed after objects of static lifetime.
+    static Entry* first_;
     Entry* entry_;
 };
 

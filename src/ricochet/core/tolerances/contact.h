@@ -34,7 +34,7 @@ inline constexpr double kRollbackTouchPaths = 2.0;
 /// Number of consecutive contacts after which a particle comes to rest for the step. The particle must be under load in
 /// each of these contacts. It must also be slower than the resting speed, or no time may pass between the contacts.
 /// Reason: in a pit of four or more faces, a sliding particle circles towards the lowest point in infinitely many, ever
-/// shorter segments. Smaller: slow sliding over many tiny triangles is cut short. Larger: circling costs more contacts
+/// shorter segments. Smaller: slow sliding over many tiny triangles is cut short. Larger: circling needs more contacts
 /// per step.
 inline constexpr int kMaxSlowContacts = 32;
 
@@ -98,8 +98,8 @@ inline constexpr double kDependentDirection = 0x1p-36;
 /// slow separations are suppressed.
 inline constexpr double kLeavingRounding = 0x1p-46;
 
-/// Like kLeavingRounding, for a particle beyond the edge of a face, from where the surface turns away from the motion.
-/// Smaller: rolling over an edge begins with a fall and a landing. Larger: slow separations are suppressed.
+/// Like kLeavingRounding, for a particle beyond the edge of a face. At that edge the surface turns away from the
+/// motion. Smaller: rolling over an edge begins with a fall and a landing. Larger: slow separations are suppressed.
 inline constexpr double kTurningAway = 0x1p-24;
 
 /// Speed in contact that counts as zero if the particle makes no progress. It is a fraction of the velocity change by

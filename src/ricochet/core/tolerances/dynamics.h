@@ -19,8 +19,8 @@ inline constexpr double kNewtonTolerance = 1e-10;
 /// written before the stop.
 inline constexpr double kDivergedGain = 100.0;
 
-/// Strain of springs whose energy counts as rounding if nothing else moves. Smaller than about 1e-8: the rounding in a
-/// network at rest counts as divergence. Larger: divergence from perfect rest is detected later.
+/// Strain of springs up to which their energy counts as rounding if nothing else moves. Smaller than about 1e-8: the
+/// rounding in a network at rest counts as divergence. Larger: divergence from perfect rest is detected later.
 inline constexpr double kNegligibleStretch = 1e-6;
 
 /// Smallest tolerance, in m and m/s, of the adaptive integrator `dormand_prince`. Reason: the number of sub-steps is
@@ -111,7 +111,7 @@ inline constexpr int kMostNewtonSteps = 20;
 /// steps take more time.
 inline constexpr int kMostHalvedSteps = 10;
 
-/// Largest error of a step of the logarithm of the temperature excess in radiative cooling. Smaller: the limit
+/// Largest error per step of the logarithm of the temperature excess in radiative cooling. Smaller: the limit
 /// approaches the rounding, which halving of the step does not reduce. Larger: the sum of the errors of all steps in a
 /// run is visible.
 inline constexpr double kCoolingError = 1e-11;

@@ -8,8 +8,8 @@ namespace ricochet {
 /// resolved together.
 inline constexpr double kSimultaneousUlps = 4.0;
 
-/// Limit of one minus the cosine of the angle between two normals. A sphere hits both the face and the edge or vertex
-/// that have these normals simultaneously. Below the limit the edge or vertex counts as a part of the face and is
+/// Limit of one minus the cosine of the angle between the normal of a face and that of its edge or vertex. It applies
+/// if a sphere hits both simultaneously. Below the limit the edge or vertex counts as a part of the face and is
 /// ignored. Reason: the face and the edge have the same rounded time of impact if the closest point is within sqrt(2 *
 /// rounding * radius) of the edge. For coordinates of a thousand radii this distance corresponds to an angle of 1e-6.
 /// Smaller: edges inside a flat surface deflect a grazing sphere. Larger: blunt real edges act as faces.

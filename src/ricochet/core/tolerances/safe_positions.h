@@ -31,9 +31,10 @@ inline constexpr double kContactOffsetWidening = 4.0;
 /// safe positions.
 inline constexpr double kLargestContactOffsetUlps = 4096.0;
 
-/// Largest difference between the radius and a sphere's smaller distance at a contact, as a fraction of the radius,
-/// that safe_position() corrects. A larger difference means that the sphere has started in overlap, and it keeps its
-/// position. Smaller: grazing contacts are not corrected. Larger: a sphere born in a slight overlap is pushed out.
+/// Largest overlap of a sphere at a contact that safe_position() corrects, as a fraction of the radius. The overlap is
+/// the radius less the distance of the centre from the surface. A larger overlap means that the sphere has started in
+/// overlap, and it keeps its position. Smaller: grazing contacts are not corrected. Larger: a sphere born in a slight
+/// overlap is pushed out.
 inline constexpr double kContactMismatch = 1e-9;
 
 /// Largest number of times that a path is halved while its chords are certified. 2^-52 of the path is below the
@@ -54,9 +55,9 @@ inline constexpr double kRimTie = 0x1p-48;
 
 /// Overlap of a sphere with a surface up to which its segment is accepted, relative to radius plus coordinates. Reason:
 /// distances and safe positions are rounded to a few 1e-16 of the coordinates, and a sphere at a safe position must
-/// pass. Smaller (below some 1e-15): safe positions fail their own certificate. Larger: spheres may sink in by that
-/// much. The tolerance never lets a centre pass a surface, because the exact certificate of the centre's segment
-/// decides that.
+/// pass. Smaller (below about 1e-15): safe positions fail their own certificate. Larger: spheres may sink in further.
+/// The tolerance never lets a centre pass a surface, because the exact certificate of the centre's segment decides
+/// that.
 inline constexpr double kSphereTolerance = 1e-12;
 
 /// Part of sphere_tolerance() that a certified segment may use. Reason: a slow sphere stops at this limit, and its
@@ -64,7 +65,7 @@ inline constexpr double kSphereTolerance = 1e-12;
 /// sooner. Larger: a sphere at rest fails its certificate by rounding.
 inline constexpr double kUsedSphereTolerance = 0.5;
 
-/// Smallest ratio of the distance to a surface after a segment to the distance before it that does not count as
+/// Smallest ratio of two distances to a surface, after and before a segment, for which the segment does not count as an
 /// approach. It applies to a sphere in overlap, and to a sphere that touches a deforming triangle. Reason: a smaller
 /// decrease of the distance is rounding. Smaller: a sphere sinks in over many steps. Larger: rounding stops spheres in
 /// overlap.
@@ -98,7 +99,7 @@ inline constexpr double kBirthReach = 0x1p-30;
 
 /// Distance, in contact offsets, by which a birth on a moving surface is displaced along the normal. Reason: the
 /// displacement must survive rounding in the frames of several bodies. Smaller: such particles start in contact.
-/// Larger: they start further from the surface.
+/// Larger: such particles start further from the surface.
 inline constexpr double kBirthOffsets = 4.0;
 
 /// One minus the cosine of the angle between normals below which a safe position is moved away from both surfaces along

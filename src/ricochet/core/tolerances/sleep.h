@@ -8,7 +8,7 @@ namespace ricochet {
 
 /// Smallest number of steps for which a sphere, and every sphere that presses on it, must be at rest before the sphere
 /// sleeps. Reason: within these steps, a sphere that begins to move on a slope exceeds the limits below. Smaller: such
-/// spheres fall asleep. Larger: piles cost more before they sleep.
+/// spheres fall asleep. Larger: piles take more time before they sleep.
 inline constexpr std::uint32_t kStepsToSleep = 50;
 
 /// Largest path of a sphere at rest in one step, as a part of its radius. The second constant applies to islands beside

@@ -62,9 +62,10 @@ inline constexpr double kImpactSolved = 0x1p-54;
 inline constexpr std::size_t kMostImpactsPerSphere = 4;
 inline constexpr std::size_t kMostElasticImpactsPerSphere = 64;
 
-/// Number of impacts of a single sphere with the same effect, if impacts lose energy. Reason: a sphere with so many
-/// impacts is pressed between its neighbours, even if the rest of the island has few impacts. Smaller: sparse islands
-/// become contact islands. Larger: dense islands take more time.
+/// Number of impacts of a single sphere in a step, beyond which its event-driven island becomes a contact island. It
+/// applies if impacts lose energy. Reason: a sphere with so many impacts is pressed between its neighbours, even if the
+/// rest of the island has few impacts. Smaller: sparse islands become contact islands. Larger: dense islands take more
+/// time.
 inline constexpr std::size_t kMostImpactsOfSphere = 100;
 
 /// Expected displacement of a sphere by a neighbour, as a part of the longest path of that neighbour. It extends the

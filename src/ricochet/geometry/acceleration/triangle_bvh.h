@@ -34,8 +34,8 @@ public:
     /// memory is short.
     TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, double margin);
     /// Ownership of a hierarchy's Embree device. A device of its own counts the memory of the hierarchy. A shared
-    /// device serves several hierarchies. Scenes with thousands of hierarchies need it, because Embree creates at most
-    /// about 1000 devices.
+    /// device serves several hierarchies. Scenes with thousands of hierarchies need a shared device, because Embree
+    /// creates at most about 1000 devices.
     enum class Device : std::uint8_t { own, shared };
     /// Builds the hierarchy over clusters that several hierarchies share.
     TriangleBvh(Clusters clusters, double margin, Device device = Device::own);

@@ -26,8 +26,8 @@ struct MassMoments {
 
 /// Returns the moments of the volume inside a closed mesh whose triangles are counter-clockwise seen from outside. The
 /// moments are exact for the polyhedron, up to rounding. All moments are negative for a mesh that is wound inward.
-/// Method: sums over the tetrahedra between one point and each triangle. Source of their moments: S. Lien, J. T.
-/// Kajiya, IEEE Computer Graphics and Applications 4 (1984).
+/// Method: sums over the tetrahedra between one point and each triangle. Source of the moments of a tetrahedron: S.
+/// Lien, J. T. Kajiya, IEEE Computer Graphics and Applications 4 (1984).
 [[nodiscard]] MassMoments moments_of(const TriangleMesh& mesh);
 /// Returns the moments of the unit ball under a map.
 [[nodiscard]] MassMoments moments_of_ball(const AffineMap& world_from_unit);

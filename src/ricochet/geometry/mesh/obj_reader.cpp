@@ -107,7 +107,7 @@ private:
     }
 
     // Leaves out a statement that a program has added to the format. An improbable keyword, or a misspelt vertex or
-    // face, is refused, because a part of the surface could be missing without it.
+    // face, is refused, because the surface could be incomplete without it.
     void leave_out(std::string_view keyword) {
         constexpr std::array<std::string_view, 6> kSlips = {"V", "F", "vertex", "face", "VT", "VN"};
         const auto is_in_name = [](char c) {

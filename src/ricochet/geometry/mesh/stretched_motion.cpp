@@ -16,9 +16,8 @@
 namespace ricochet {
 namespace {
 
-/// Distance from both keys of an interval at which the range of bounds begins and ends, as a fraction of the interval.
-/// The bounds then exclude the neighbouring intervals. Local: the bounds of one interval are valid on both sides of
-/// this distance.
+/// Fraction of an interval between keys that is left out at both ends when its bounds are computed. The bounds then
+/// exclude the neighbouring intervals. Local: the bounds of the rest are valid for the whole interval.
 constexpr double kInside = 1e-9;
 
 [[noreturn]] void refuse(const std::string& what) { throw InputError("scale that changes in time: " + what); }

@@ -9,8 +9,8 @@
 namespace ricochet {
 namespace {
 
-/// Relative errors of a sum of squares, a scalar product and a local coordinate, in doubles and in double-doubles.
-/// There are about 6 roundings, and at least 8 are allowed for. Local: an error bound of this arithmetic.
+/// Relative errors of a sum of squares, a scalar product and a local coordinate, in doubles and in double-doubles. The
+/// bounds cover at least 8 roundings, and about 6 occur. Local: an error bound of this arithmetic.
 constexpr double kDoubleError = 0x1p-50;
 constexpr double kDoubleDoubleError = 0x1p-98;
 

@@ -83,8 +83,8 @@ public:
     /// either side. From outside, only the first contact over all parts is returned. Parts in `supports` are skipped.
     /// If there are any, contacts from outside are skipped too. A sphere that starts in overlap has a contact only if
     /// it approaches. This is at the first time at which the distance is at most the radius and decreases (faster than
-    /// kMinApproach of the speed). A point that starts on the surface is reflected at time 0 from the side towards
-    /// which it moves.
+    /// kMinApproach of the speed). A point that starts on the surface hits it at time 0, as if it came from the side
+    /// opposite to its motion.
     ///
     /// Points, spheres against spheres, and spheres inside circular cylinders use roots of polynomials in
     /// double-double, with an error of about an ulp. Other cases use conservative advancement on the true distance. The

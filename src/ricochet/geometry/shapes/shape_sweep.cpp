@@ -393,7 +393,8 @@ ShapeContacts contacts_of(const LocalShape& shape, const LocalPath& path, double
             if (time != kNever) found.contacts[found.count++] = contact_with_part(shape, path, part, time);
         }
     } else if (!supports.any()) {
-        // A point that starts on the surface is reflected from the side towards which it moves, as at planes.
+        // A point that starts on the surface hits it at time 0, as if it came from the side opposite to its motion.
+        // Planes use the same rule.
         double time = 0.0;
         if (side > 0) time = radius > 0.0 ? contact_of_ball_outside(shape, path, radius) : first_entry(shape, path);
         const int seen_from = side > 0 ? 1 : -heading(shape, path);

@@ -34,7 +34,7 @@ namespace ricochet {
 /// A possible contact, up to rounding, of a point or sphere on a path with a triangle.
 struct Meeting {
     double part = 0.0;  ///< time, as a fraction of the path's duration
-    int side = 0;       ///< side of the triangle's plane on which a point is before it: +1 is the normal's side
+    int side = 0;       ///< side of the triangle's plane from which a point comes: +1 is the normal's side
 };
 
 /// Finds the first contact of a point (radius 0) or a sphere on the path with the moving triangle. Ignores contacts

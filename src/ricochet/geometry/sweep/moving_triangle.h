@@ -43,8 +43,9 @@ struct MovingContact {
     /// bodies may pass each other at this distance.
     double distance = 0.0;
     Vec3 barycentric;  ///< of the triangle's nearest point
-    Vec3 normal;       ///< unit vector from there to the point or the sphere's centre; rounding if a point lies on the
-                       ///< triangle
+    /// Unit vector from the triangle's nearest point to the sphere's centre. For a point it is the triangle's normal,
+    /// oriented against the relative motion.
+    Vec3 normal;
 };
 
 /// Returns true only if the closed ball of the given radius (0: the point) touches no point of the triangle while the

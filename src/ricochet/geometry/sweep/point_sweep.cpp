@@ -107,7 +107,7 @@ std::optional<Crossing> first_crossing_of_line(const Path& path, const Surface& 
     if (before == after && before != 0) return std::nullopt;
     if (!surface.contains_crossing_of(path.c[0], path.end)) return std::nullopt;
     if (before == 0 && after == 0) return Crossing{surface.entry(path.c[0], path.end) * path.duration, 0};
-    // A particle that starts on the surface is reflected from the side towards which it moves.
+    // A particle that starts on the surface hits it at time 0, as if it came from the side opposite to its motion.
     if (before == 0) return Crossing{0.0, -after};
     if (surface.least_fraction(path.c[0], path.end) * path.duration > latest) return std::nullopt;
     return Crossing{surface.fraction(path.c[0], path.end) * path.duration, before};
@@ -185,9 +185,9 @@ bool crosses_around(const Path& path, const Surface& surface, const Vec3& normal
     return false;
 }
 
-/// Returns the first crossing of a path that starts in the surface's plane. If the start is on the surface itself, the
-/// particle is reflected from the side towards which it moves. Otherwise one root is at the start, and the height
-/// returns to zero at the other root.
+/// Returns the first crossing of a path that starts in the surface's plane. A particle that starts on the surface
+/// itself hits it at time 0, as if it came from the side opposite to its motion. Otherwise one root is at the start,
+/// and the height returns to zero at the other root.
 template <class Surface>
 std::optional<Crossing> first_crossing_from_plane(const Path& path, const Surface& surface) {
     const Vec3 normal = surface.normal();

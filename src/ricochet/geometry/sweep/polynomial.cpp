@@ -295,7 +295,7 @@ Times down_crossings(const Polynomial& p, double from, double to) {
         if (root > from && root <= to) times.append(root);
     };
     if (p.degree <= 2) {
-        // The exact root of a root that was rounded to an end of the interval can be on either side of that end.
+        // If a root was rounded to an end of the interval, the exact root can be on either side of that end.
         const double root = quadratic_roots(p).falling;
         if (root == to && p.value(to).hi > 0.0) return times;
         if (root == from && p.value(from).hi > 0.0) times.append(root);

@@ -29,17 +29,17 @@ inline constexpr std::int64_t kNoHit = -1;
 /// Hits of the mesh, one entry per query. An entry without a hit has triangle kNoHit, distance infinity and point NaN.
 struct MeshHits {
     std::vector<std::int64_t> triangle;  ///< index; the smallest one if several are hit at the same point
-    std::vector<double> distance;        ///< from the origin of a ray, in m; for a sweep the fraction of its path, in
-                                         ///< [0, 1]
-    std::vector<Vec3> point;             ///< in m, on the triangle, rounded
+    /// Distance from the origin of a ray, in m. For a sweep it is the fraction of the path, in [0, 1].
+    std::vector<double> distance;
+    std::vector<Vec3> point;  ///< in m, on the triangle, rounded
 };
 
 /// All hits of rays. Ray i has the hits [first[i], first[i + 1]), in the order along the ray.
 struct AllMeshHits {
     std::vector<std::uint64_t> first;  ///< one entry more than there are rays
     MeshHits hits;
-    std::vector<std::int8_t> crossing;   ///< +1 if the ray leaves through the surface (along its normal), -1 if it
-                                         ///< enters, 0 if it only touches
+    /// +1 if the ray leaves through the surface (along its normal), -1 if the ray enters, 0 if it only touches.
+    std::vector<std::int8_t> crossing;
     std::vector<std::uint8_t> in_plane;  ///< 1 if the ray lies in the planes of all triangles of the hit
 };
 
@@ -75,8 +75,8 @@ public:
 
     [[nodiscard]] const TriangleMesh& mesh() const;
     /// Moves the vertices and keeps the triangles. The hierarchy keeps its structure and is refitted, which takes less
-    /// time than a new build. Results equal those of a new object. Copies of this object keep the old vertices. Throws
-    /// like the constructor, and for a different number of vertices. After an exception, nothing has changed.
+    /// time than a new build. Results equal the results of a new object. Copies of this object keep the old vertices.
+    /// Throws like the constructor, and for a different number of vertices. After an exception, nothing has changed.
     void set_vertices(std::span<const Vec3> vertices);
     /// Returns true if the mesh has an inside: every edge belongs to an even number of triangles. Vertices at equal
     /// positions are one vertex, and triangles that repeat an earlier one count once. The winding of the triangles has
@@ -85,8 +85,8 @@ public:
 
     /// Returns the first hit of every ray.
     [[nodiscard]] MeshHits first_hits(const RayBatch& rays) const;
-    /// Returns every hit of every ray once. Triangles give one hit together if the ray hits them at an edge or vertex
-    /// that they share. A section of the ray along the surface also gives one hit, at the start of the section.
+    /// Returns every hit of every ray once. If the ray hits several triangles at an edge or vertex that they share,
+    /// they give one hit. A section of the ray along the surface also gives one hit, at the start of the section.
     [[nodiscard]] AllMeshHits all_hits(const RayBatch& rays) const;
     /// Returns the number of hits of each ray.
     [[nodiscard]] std::vector<std::uint64_t> count_hits(const RayBatch& rays) const;
@@ -99,15 +99,15 @@ public:
                                                    InsideRule rule = InsideRule::parity) const;
     /// Returns winding numbers of the mesh around points: 1 inside a closed mesh wound outward, -1 if it is wound
     /// inward, 0 outside. The numbers of overlapping shells and repeated triangles add up. For an open mesh the number
-    /// is the fraction of all directions from the point that hit the back of the surface, less the fraction that hit
-    /// its front. The error is usually about 2^-50, and at most about 2^-32 for each boundary edge.
+    /// is the fraction of all directions from the point that hit the back of the surface. The fraction that hits its
+    /// front is subtracted. The error is usually about 2^-50, and at most about 2^-32 for each boundary edge.
     [[nodiscard]] std::vector<double> winding_numbers(std::span<const Vec3> points) const;
     /// Returns the nearest points of the mesh. The triangle is kNoHit if no point of the mesh is within `within` (in m,
     /// >= 0).
     [[nodiscard]] NearestPoints closest_points(std::span<const Vec3> points,
                                                double within = std::numeric_limits<double>::infinity()) const;
-    /// Returns distances from the surface, in m. They are negative for points that are inside by the rule. The sign is
-    /// exact. Throws like inside().
+    /// Returns distances from the surface, in m. Distances are negative for points that are inside by the rule. The
+    /// sign is exact. Throws like inside().
     [[nodiscard]] std::vector<double> signed_distances(std::span<const Vec3> points,
                                                        InsideRule rule = InsideRule::parity) const;
 
@@ -119,9 +119,9 @@ public:
                                  std::span<const double> radii) const;
     /// Returns the first contacts while the mesh's vertices move straight to `vertices_after`. No contact is missed. A
     /// point that is on the mesh at the start hits the mesh at fraction 0.
-    /// A sphere can overlap a triangle at the start without approaching it. It then has a contact when it comes nearer
-    /// to the triangle than at the start. It also has a contact when it hits the triangle again after a separation.
-    /// Separation is tested at every 64th of the path.
+    /// A sphere can overlap a triangle at the start without approaching it. Such a sphere has a contact when it comes
+    /// nearer to the triangle than at the start. It also has a contact when it hits the triangle again after a
+    /// separation. Separation is tested at every 64th of the path.
     [[nodiscard]] MeshHits sweep_moving(std::span<const Vec3> from, std::span<const Vec3> to,
                                         std::span<const double> radii, std::span<const Vec3> vertices_after) const;
 

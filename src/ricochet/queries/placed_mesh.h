@@ -23,8 +23,8 @@ namespace ricochet {
 class PlacedMesh {
 public:
     /// Shares the mesh. Throws InputError if the map is not finite or not a similarity. The scales of the axes may
-    /// differ by at most 1e-9, and the angles between axes may deviate from a right angle by at most 1e-9. These limits
-    /// accept rotations written with ten digits.
+    /// differ, and the axes may deviate from right angles, by at most 1e-9 of the scale. These limits accept rotations
+    /// written with ten digits.
     PlacedMesh(const MeshQueries& mesh, const AffineMap& world_from_mesh);
 
     // The queries of MeshQueries, in world coordinates and lengths.

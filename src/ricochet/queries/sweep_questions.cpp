@@ -150,9 +150,9 @@ std::optional<MovingContact> contact_after_leaving(const MovingPoint& point, dou
 }
 
 /// Returns the contact of a sphere that touches or overlaps the triangle at the start, in the contact `at_start`. If
-/// the distance decreases, this is a contact at once, as beside a triangle at rest (SphereSweep). Otherwise the contact
-/// is when the sphere comes nearer to the triangle than at the start, or touches it again after a separation. If all
-/// corners of the triangle move equally, the sphere never comes nearer.
+/// the distance decreases, the contact is at the start, as beside a triangle at rest (SphereSweep). Otherwise the
+/// contact is when the sphere comes nearer to the triangle than at the start, or touches it again after a separation.
+/// If all corners of the triangle move equally, the sphere never comes nearer.
 std::optional<MovingContact> contact_from_overlap(const MovingPoint& point, double radius,
                                                   const MovingTriangle& triangle, const MovingContact& at_start) {
     const auto& [a, b, c] = triangle.corners;

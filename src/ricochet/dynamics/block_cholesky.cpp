@@ -14,14 +14,15 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-/// Largest fraction of zeros in a front. Consecutive columns are eliminated together up to this limit: larger dense
-/// matrices are faster and outweigh the work on some zeros. Local, because only the cost depends on it, and rounding.
+/// Largest fraction of zeros in a front. Consecutive columns are merged into one front up to this limit. Larger dense
+/// matrices are faster, and this gain exceeds the cost of operations on some zeros. Local, because the limit affects
+/// only the cost and the rounding.
 constexpr double kMostZeros = 0.2;
 
 using Pair = BlockCholesky::Pair;
 using Lists = std::vector<std::vector<std::uint32_t>>;
 
-/// Returns the row of blocks that is eliminated as the i-th, in an order that keeps L sparse.
+/// Returns the elimination order, which keeps L sparse: entry i is the row of blocks that is eliminated as number i.
 std::vector<std::uint32_t> thin_order(std::size_t rows, std::span<const Pair> pairs) {
     using Pattern = Eigen::SparseMatrix<double>;
     std::vector<Eigen::Triplet<double>> slots;
@@ -62,7 +63,8 @@ std::vector<std::uint32_t> united(const std::vector<std::uint32_t>& a, const std
     return result;
 }
 
-/// Returns, for every row, the first row that its column of L reaches: its parent in the elimination tree.
+/// Returns the parent of every row in the elimination tree: the first row below the diagonal with a nonzero in its
+/// column of L.
 std::vector<std::uint32_t> parents_of(const Lists& later) {
     std::vector<std::uint32_t> parent(later.size(), kNone);
     std::vector<std::uint32_t> ancestor(later.size(), kNone);
@@ -85,11 +87,11 @@ std::vector<std::uint32_t> parents_of(const Lists& later) {
 /// Returns the position of each row in a postorder, in which every subtree is contiguous.
 std::vector<std::uint32_t> postorder(const std::vector<std::uint32_t>& parent) {
     const auto count = static_cast<std::uint32_t>(parent.size());
-    std::vector<std::uint32_t> below(count, 1);  // rows in the subtree of each, itself included
+    std::vector<std::uint32_t> below(count, 1);  // number of rows in the subtree of each row, itself included
     for (std::uint32_t k = 0; k < count; ++k) {
         if (parent[k] != kNone) below[parent[k]] += below[k];
     }
-    std::vector<std::uint32_t> free(count, 0);  // first free position for the next child of each
+    std::vector<std::uint32_t> free(count, 0);  // first free position for the next child of each row
     std::vector<std::uint32_t> slot(count, 0);
     std::uint32_t of_roots = 0;
     for (std::uint32_t k = count; k-- > 0;) {
@@ -128,7 +130,8 @@ BlockCholesky::BlockCholesky(std::size_t rows, std::span<const Pair> pairs) {
     place_entries(pairs);
 }
 
-/// Merges a column with the next one if that reaches almost the same rows.
+/// Groups the columns into fronts. A column joins the front of the column before it if both have nonzeros in almost the
+/// same rows.
 void BlockCholesky::make_fronts(const Structure& structure) {
     const auto rows = static_cast<std::uint32_t>(structure.below.size());
     front_of_.assign(rows, 0);
@@ -202,7 +205,7 @@ bool BlockCholesky::factorize(const BlockMatrix& matrix) {
     return true;
 }
 
-/// Adds the front's own part of the matrix and the updates of its children.
+/// Assembles a front: its own entries of the matrix, plus the updates of its children.
 void BlockCholesky::assemble(const Front& front, const BlockMatrix& matrix) {
     const std::size_t rows = front.rows();
     front_values_.assign(rows * rows, 0.0);
@@ -226,7 +229,7 @@ void BlockCholesky::assemble(const Front& front, const BlockMatrix& matrix) {
     }
 }
 
-/// Adds the last update on the stack.
+/// Adds the last update on the stack to the current front.
 void BlockCholesky::add_update(const Front& child, std::size_t rows) {
     const std::size_t blocks = child.slots.size();
     const std::size_t size = 3 * blocks;
@@ -240,7 +243,7 @@ void BlockCholesky::add_update(const Front& child, std::size_t rows) {
     updates_.resize(updates_.size() - size * size);
 }
 
-/// Stores the columns of L, and pushes the update for the parent.
+/// Stores the eliminated columns of L, and pushes the update for the parent on the stack.
 void BlockCholesky::keep(const Front& front) {
     const std::size_t rows = front.rows();
     const std::size_t columns = front.columns();

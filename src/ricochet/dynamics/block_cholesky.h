@@ -1,6 +1,6 @@
 /// \file
-/// Private to the integrators and to the responses: the factorization of symmetric matrices of 3 x 3 blocks, with one
-/// row of blocks per particle.
+/// Cholesky factorization of symmetric matrices of 3 x 3 blocks, with one row of blocks per particle. Private to the
+/// integrators and to the responses.
 #pragma once
 
 #include <array>
@@ -11,26 +11,27 @@
 
 namespace ricochet {
 
-/// A 3 x 3 matrix by rows.
+/// A 3 x 3 matrix, stored by rows.
 using Block3 = std::array<std::array<double, 3>, 3>;
 
-/// Symmetric matrix: a block for every row, and one for every coupled pair of rows.
+/// Symmetric matrix of blocks: one diagonal block for every row, and one off-diagonal block for every coupled pair of
+/// rows.
 struct BlockMatrix {
     std::vector<Block3> own;  ///< diagonal blocks; only their lower halves are read
-    /// Off-diagonal blocks by pair: rows of the pair's first entry, columns of its second. The transpose stands on the
-    /// other side of the diagonal.
+    /// Off-diagonal blocks, one for each pair. A block is in the row of the pair's first entry and in the column of its
+    /// second entry. Its transpose at the mirrored position is not stored.
     std::vector<Block3> between;
 };
 
-/// Cholesky factorization L L^T of such matrices with the same pairs. An approximate minimum degree order keeps L
-/// sparse. Columns of L with the same nonzero rows are eliminated together as dense matrices: the multifrontal method.
-/// The order of all sums depends only on the pairs.
+/// Cholesky factorization L L^T of block matrices that all have the same pairs. An approximate minimum degree order
+/// keeps L sparse. Columns of L with the same nonzero rows are eliminated together as dense matrices: the multifrontal
+/// method. The order of all sums depends only on the pairs.
 ///
 /// Source: J. W. H. Liu, "The multifrontal method for sparse matrix solution: theory and practice", SIAM Review 34
 /// (1992).
 class BlockCholesky {
 public:
-    /// Two different rows of blocks. A pair may occur more than once: its blocks add up.
+    /// Two different rows of blocks. If a pair occurs more than once, its blocks are added.
     struct Pair {
         std::uint32_t first = 0;
         std::uint32_t second = 0;
@@ -40,15 +41,15 @@ public:
     /// Computes the elimination order and the structure of L. rows: number of rows of blocks.
     BlockCholesky(std::size_t rows, std::span<const Pair> pairs);
 
-    /// Factorizes a matrix. Returns false if it is not positive definite; solve() must not be called then.
+    /// Factorizes a matrix. Returns false if the matrix is not positive definite. solve() must not be called then.
     [[nodiscard]] bool factorize(const BlockMatrix& matrix);
-    /// Returns the approximate number of multiplications of a factorization. It depends only on the pairs.
+    /// Returns the approximate number of multiplications of a factorization. The number depends only on the pairs.
     [[nodiscard]] double operations() const;
-    /// Replaces the right-hand side, three numbers per row of blocks, by the solution.
+    /// Replaces the right-hand side by the solution. values: three numbers per row of blocks.
     void solve(std::span<double> values) const;
 
 private:
-    /// Block of the matrix in a front.
+    /// Position of a matrix block in a front.
     struct Entry {
         std::uint32_t pair;
         std::uint32_t row;     // row of blocks in the front
@@ -58,12 +59,12 @@ private:
     /// Columns of L that are eliminated together, and the rows below them.
     struct Front {
         std::uint32_t begin = 0;           // first row of blocks, in elimination order
-        std::uint32_t count = 0;           // number of rows of blocks eliminated in it
-        std::vector<std::uint32_t> below;  // rows of blocks below them, ascending in elimination order
-        std::vector<Entry> entries;        // matrix blocks assembled first in this front
+        std::uint32_t count = 0;           // number of rows of blocks that the front eliminates
+        std::vector<std::uint32_t> below;  // rows of blocks below the eliminated ones, ascending in elimination order
+        std::vector<Entry> entries;        // matrix blocks that are added to this front
         std::vector<std::uint32_t> children;
-        std::vector<std::uint32_t> slots;  // indices of its own `below` in its parent's front
-        std::size_t values = 0;            // offset of its columns of L in values_
+        std::vector<std::uint32_t> slots;  // indices of the rows `below` in the parent's front
+        std::size_t values = 0;            // offset of the front's columns of L in values_
         [[nodiscard]] std::size_t rows() const { return 3 * (count + below.size()); }
         [[nodiscard]] std::size_t columns() const { return std::size_t{3} * count; }
     };
@@ -78,13 +79,13 @@ private:
     void solve_forwards(const Front& front, std::vector<double>& x) const;
     void solve_backwards(const Front& front, std::vector<double>& x) const;
 
-    std::vector<std::uint32_t> order_;     // position in the elimination order, for every row of blocks
+    std::vector<std::uint32_t> order_;     // position of every row of blocks in the elimination order
     std::vector<std::uint32_t> row_of_;    // the inverse of order_
-    std::vector<std::uint32_t> front_of_;  // by position in the elimination order
-    std::vector<Front> fronts_;            // children before parents
+    std::vector<std::uint32_t> front_of_;  // index of the front of each position in the elimination order
+    std::vector<Front> fronts_;            // all fronts, children before parents
     std::vector<double> values_;           // L: the columns of every front, one front after the other
     std::vector<double> updates_;          // stack of updates for parents not yet assembled
-    std::vector<double> front_values_;     // the front in elimination
+    std::vector<double> front_values_;     // matrix of the front that is being eliminated
 };
 
 }  // namespace ricochet

@@ -13,10 +13,11 @@ namespace {
 constexpr std::uint32_t kCountPurpose = 0x08;
 constexpr std::uint32_t kLifeRatePurpose = 0x09;
 constexpr std::uint32_t kChildStream = 0x0A000000;
-/// Most children per event. Local: a limit that keeps whole numbers exact.
+/// Largest number of children per event. Local: whole numbers up to this limit are exact as double and as
+/// std::uint32_t.
 constexpr double kMostChildren = 1e9;
 
-// Returns the key of the random numbers of a parent's draws and of its children.
+// Returns the key of the random numbers for a parent's own draws or for one of its children.
 std::uint64_t mixed_key(std::uint64_t lineage, std::uint32_t stream, std::uint32_t ordinal) {
     const auto bits = philox4x32({ordinal, kChildStream | stream, 0, 0},
                                  {static_cast<std::uint32_t>(lineage), static_cast<std::uint32_t>(lineage >> 32)});
@@ -36,15 +37,16 @@ void inherit_attributes(const Emitter& emitter, const Particle& parent, Particle
     }
 }
 
-// Returns shares proportional to the weights, as whole multiples of a unit that also divides the mass, so that sums are
-// exact. The mass must suffice for the smallest share of every weight.
+// Divides the mass into shares proportional to the weights. The shares and the mass are whole multiples of one unit, so
+// all sums are exact. The mass must be at least the number of weights times the smallest share.
 std::vector<double> shares_of(double mass, const std::vector<double>& weights) {
     int exponent = 0;
     (void)std::frexp(mass, &exponent);
     const double unit = std::ldexp(1.0, exponent - std::numeric_limits<double>::digits);
-    // The least share, in units, is rounded down so that the mass suffices even if every share is the least.
+    // The smallest share, in units, is rounded down. The mass then suffices even if all shares have this size.
     const double least = std::max(1.0, std::floor(kSmallestMass / unit));
-    // If the least share exceeds rounding, every share starts with it, and only the rest is divided by the weights.
+    // If the smallest share is more than one unit, every share starts with it. Only the remaining mass is then divided
+    // in proportion to the weights.
     const double kept = least > 1.0 ? least : 0.0;
     const double shared = mass / unit - kept * static_cast<double>(weights.size());
     double sum = 0.0;
@@ -60,7 +62,7 @@ std::vector<double> shares_of(double mass, const std::vector<double>& weights) {
     return shares;
 }
 
-// Makes launches relative to the common centre of mass and adds the parent's velocity.
+// Makes the launch velocities relative to the common centre of mass, and adds the parent's velocity.
 void share_momentum(const Vec3& velocity, double mass, std::vector<Particle>& fragments) {
     Vec3 momentum;
     for (const Particle& fragment : fragments) momentum += fragment.mass * fragment.velocity;
@@ -76,7 +78,8 @@ LifeBirths births_in_life(const Emitter& emitter, const Particle& parent, double
     LifeBirths births;
     if (!(rate > 0.0)) return births;
     const auto time_of = [&](double ordinal) { return parent.birth_time + (ordinal + 0.5) / rate; };
-    // The first birth at or after a time is estimated, then corrected for rounding, because a birth's own time decides.
+    // The ordinal of the first birth at or after a time is estimated, then corrected for rounding. The computed times
+    // of the births decide.
     const double last = std::min(kMostChildren, static_cast<double>(emitter.description().limit));
     const auto first_from = [&](double time) {
         double ordinal = std::clamp(std::floor((time - parent.birth_time) * rate - 0.5), 0.0, last);

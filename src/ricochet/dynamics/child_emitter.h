@@ -1,8 +1,8 @@
 /// \file
-/// Particles born of particles: their number, birth times and initial states. All functions are pure functions of the
-/// parent and its lineage, so births depend on neither threads nor time steps.
-/// Method: the hierarchies of W. T. Reeves, "Particle Systems", ACM TOG 2(2), 1983, section 2.6; shares of mass and
-/// momentum by conservation.
+/// Particles that are born from other particles: their number, birth times and initial states. All functions are pure
+/// functions of the parent and its lineage, so births depend on neither threads nor time steps. Method: the hierarchies
+/// of W. T. Reeves, "Particle Systems", ACM TOG 2(2), 1983, section 2.6. Shares of mass and momentum follow from
+/// conservation.
 #pragma once
 
 #include <cstdint>
@@ -26,44 +26,42 @@ struct LifeBirths {
     std::uint32_t more = 0;        ///< number of later births that are not listed
 };
 
-/// Returns the births of a parent's life in [from, to), of which the first `most` are listed. Child k is born at the
-/// age (k + 1/2) / rate, with one draw of the rate per parent. The emitter's limit ends the births.
+/// Returns the births in the interval [from, to) of a parent's life. At most `most` births are listed. Child k is born
+/// at the parent's age (k + 1/2) / rate. The rate is drawn once per parent. The births end at the emitter's limit.
 [[nodiscard]] LifeBirths births_in_life(const Emitter& emitter, const Particle& parent, double from, double to,
                                         std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 
 /// Returns the number of children of one event. event: index of the event in the parent's life.
 [[nodiscard]] std::uint32_t children_of_event(const Emitter& emitter, const Particle& parent, std::uint32_t event);
 
-/// Makes one child. parent: its state at the birth. The child starts at the parent's position. Its velocity is its own
-/// launch plus the inherited part. Attributes that the emitter does not name are copied from the parent.
+/// Makes one child at the parent's position. parent: the parent's state at the birth. The child's velocity is its
+/// launch velocity plus the inherited part of the parent's velocity. Attributes that the emitter does not name are
+/// copied from the parent.
 [[nodiscard]] Particle make_child(const Emitter& emitter, const Particle& parent, std::uint32_t ordinal, double time);
 
 /// Child of a cloud.
 struct CloudChild {
     Particle particle;
-    Vec3 offset;  ///< position about the parent, in m
+    Vec3 offset;  ///< position relative to the parent, in m
 };
 
-/// Makes one child of a cloud at its position about the parent. Its velocity is that of the position plus its own
-/// launch. If the test rejects the child, another position is drawn, see Emitter::draw(). Returns nothing if the test
-/// rejects all positions.
+/// Makes one child of a cloud at its target position. The child's velocity is the velocity of the target position plus
+/// its launch velocity. If the test rejects the child, another position is drawn, see Emitter::draw(). Returns nothing
+/// if the test rejects all positions.
 [[nodiscard]] std::optional<CloudChild> make_cloud_child(const Emitter& emitter, const Particle& parent,
                                                          std::uint32_t ordinal, double time, const BirthTest& test);
 
-/// Returns the largest number of fragments (at least 1) of `mass`, in kg, that each keep at least kSmallestMass.
+/// Returns the largest number of fragments, at least 1, such that each has at least kSmallestMass. mass: total mass, in
+/// kg.
 [[nodiscard]] std::uint32_t most_fragments(double mass);
 
-/// Makes children that share the parent's mass and momentum,
-/// all at its position. The drawn masses are weights: each
-/// child gets that share of the parent's mass. The masses add
-/// up to the parent's mass exactly, in any order.
+/// Makes children that share the parent's mass and momentum, all at the parent's position. The drawn masses are
+/// weights. Each child's share of the parent's mass is proportional to its weight. The sum of the masses is exactly the
+/// parent's mass, in any order of summation.
 ///
-/// Launches are relative to their common centre of mass, so
-/// momenta add up to the parent's within rounding. The kinetic
-/// energy grows by that of the launches in the frame of that
-/// centre. The cube of a fragment's radius is proportional to
-/// its mass. 1 <= count <= most_fragments() of the parent's
-/// mass.
+/// The launch velocities are relative to the common centre of mass, so the sum of the momenta is the parent's momentum
+/// within rounding. The kinetic energy grows by the energy of the launches in the frame of that centre. The cube of a
+/// fragment's radius is proportional to its mass. 1 <= count <= most_fragments() of the parent's mass.
 [[nodiscard]] std::vector<Particle> make_fragments(const Emitter& emitter, const Particle& parent, std::uint32_t count,
                                                    std::uint32_t first_ordinal, double time);
 

@@ -12,18 +12,19 @@ namespace {
 /// A mathematical constant.
 constexpr double kTwoPi = 6.28318530717958647692;
 
-/// Coefficients of a damped oscillator: d(t) = c d0 + s (v0 + g d0) and d'(t) = c v0 - s (g v0 + pull d0), with g half
-/// of the damping.
+/// Coefficients of the solution of a damped oscillator. With g as half of the damping, d(t) = c d0 + s (v0 + g d0) and
+/// d'(t) = c v0 - s (g v0 + pull d0).
 struct Decay {
     double c = 1.0;
     double s = 0.0;
 };
 
-/// Returns sin(x) / x or sinh(x) / x near 0, from x^2 with its sign; the next term is below rounding.
+/// Returns sinh(x) / x near 0 for square = x^2, or sin(x) / x for square = -x^2. The next term of the series is below
+/// rounding.
 double near_zero(double square) { return 1.0 + square / 6.0 * (1.0 + square / 20.0); }
 
 Decay decay_of(const CloudRule& rule, double t) {
-    // Local: the series is exact to rounding below it.
+    // Local: for squares below this value, the series of near_zero() is exact to rounding.
     constexpr double kSmallSquare = 1e-6;
     const double half = 0.5 * rule.damping;
     const double square = half * half - rule.pull;  // square of the rate if the oscillator is overdamped

@@ -1,5 +1,5 @@
 /// \file
-/// Particles of a cloud: their positions about the parent, and their motion relative to these positions.
+/// Particles of a cloud: their target positions relative to the parent, and their motion relative to these targets.
 #pragma once
 
 #include "ricochet/dynamics/emitter.h"
@@ -9,26 +9,26 @@
 
 namespace ricochet {
 
-/// Returns the motion of a position about the parent after `age` seconds, relative to the parent. The position turns
+/// Returns position and velocity, relative to the parent, of a target position after `age` seconds. The target turns
 /// about the parent at a constant rate.
 [[nodiscard]] PhaseState turned_offset(const CloudRule& rule, const Vec3& offset, double age);
 
-/// Returns the angle, in rad, by which a cloud turns or swings in `duration` seconds.
+/// Returns the largest phase angle, in rad, of the cloud's rotation, oscillation and damping in `duration` seconds.
 [[nodiscard]] double cloud_turn(const CloudRule& rule, double duration);
 
-/// Motion of a child of a cloud while its parent flies along one path. As a coupling, it gives the acceleration of the
-/// child's moving target position in the world, plus the pull towards it. With d the offset from the target, d'' =
-/// -pull d - damping d', which is solved in closed form.
+/// Motion of a child of a cloud while its parent flies along one path. As a coupling, this class provides the
+/// acceleration of the child's target position in the world, plus the acceleration towards the target. The offset d
+/// from the target obeys d'' = -pull d - damping d', which is solved in closed form.
 class CloudMember final : public Coupling {
 public:
-    /// parent: path of the parent, which begins at `begin`, in s. place: target position about the parent at the
-    /// child's birth.
+    /// parent: path of the parent. begin: start time of that path, in s. offset: target position relative to the parent
+    /// at the child's birth, in m.
     CloudMember(const CloudRule& rule, const Path& parent, double begin, const Vec3& offset, double birth_time)
         : rule_(rule), parent_(parent), begin_(begin), place_(offset), birth_time_(birth_time) {}
 
-    /// Returns the target position, with its velocity, in the world at a time, in s.
+    /// Returns position and velocity of the target in the world at a time, in s.
     [[nodiscard]] PhaseState offset_at(double time) const;
-    /// Returns the state at `to`, in s, of a child that has `state` at `from` and hits nothing.
+    /// Returns the state at time `to` of a child that has `state` at time `from`, in s, and hits nothing in between.
     [[nodiscard]] PhaseState after(const PhaseState& state, double from, double to) const;
 
     [[nodiscard]] Vec3 acceleration(const ForceInput& input) const override;

@@ -22,21 +22,23 @@ constexpr std::array<Node, 3> kGauss{{{0.11270166537925831, 5.0 / 18.0},  // (1 
                                       {0.88729833462074169, 5.0 / 18.0}}};
 constexpr std::array<Node, 2> kTrapezoid{{{0.0, 0.5}, {1.0, 0.5}}};
 
-/// Returns the quadrature rule of the method. velocity_verlet kicks with the forces at the ends of its paths. Any other
-/// rule would make a bounce cost energy (docs/decisions/2026-11-24-springs-that-bounce.md).
+/// Returns the quadrature rule that suits the integrator. velocity_verlet uses the forces at both ends of a path, which
+/// is the trapezoidal rule. With any other rule, a bounce would lose energy
+/// (docs/decisions/2026-11-24-springs-that-bounce.md).
 std::span<const Node> rule_of(IntegratorKind kind) {
     const bool is_verlet = kind == IntegratorKind::velocity_verlet || kind == IntegratorKind::ballistic;
     return is_verlet ? std::span<const Node>(kTrapezoid) : std::span<const Node>(kGauss);
 }
 
-/// Returns the piece that is flown at a time.
+/// Returns the piece whose time interval contains a time, in s.
 const FlownPiece& piece_at(std::span<const FlownPiece> pieces, double time) {
     const auto next = std::upper_bound(pieces.begin() + 1, pieces.end(), time,
                                        [](double t, const FlownPiece& piece) { return t < piece.begin; });
     return *(next - 1);
 }
 
-/// Returns the state `s` seconds into a path that is followed for `duration` seconds up to the velocity `arrival`.
+/// Returns the state after `s` seconds on a path. The path is followed for `duration` seconds and ends with the
+/// velocity `arrival`.
 PhaseState state_along(const Path& path, double s, double duration, const Vec3& arrival) {
     if (duration == 0.0) return {path.position(0.0), arrival};
     s = std::clamp(s, 0.0, duration);
@@ -51,7 +53,7 @@ struct TimeInterval {
     [[nodiscard]] double middle() const { return 0.5 * (begin + end); }
 };
 
-/// Splits the step at the start of every piece: all paths and forces are smooth within each interval.
+/// Splits the step at the start of every piece, so that all paths and forces are smooth within each interval.
 std::vector<TimeInterval> parts_between(std::span<const FlownPiece> first, std::span<const FlownPiece> second,
                                         const FlownPiece& step) {
     std::vector<double> times{step.begin + step.duration};
@@ -128,11 +130,12 @@ void PlanDeviations::correct(const ParticleSystem& system, const std::vector<Fli
     }
 }
 
-/// Returns the velocity changes by forces between members, in m/s by member; empty if there are no such forces. Forces
-/// that depend on positions only are evaluated at the end of the paths. They act for half of the step, as in velocity
-/// Verlet. A departure in position grows from the bounce to the end, so twice its mean is at most its final value. A
-/// departure in velocity is complete at once. If the forces depend on velocities, the mean departure therefore acts for
-/// the whole step.
+/// Returns the velocity changes that forces between members cause, in m/s, for each member. The list is empty if there
+/// are no such forces. Forces are evaluated at the ends of the paths, with each member displaced by its deviation from
+/// plan. If the forces depend on positions only, they act for half of the step, as in velocity Verlet. A deviation in
+/// position grows from the bounce to the end of the step. Twice its mean is therefore at most its final value. A
+/// deviation in velocity has its full size from the bounce on. If the forces depend on velocities, the mean deviation
+/// therefore acts for the whole step.
 std::vector<Vec3> PlanDeviations::mutual_changes(const ParticleSystem& system, const std::vector<Flight>& plans) const {
     const double duration = plans.front().path.duration;
     const double weight = (system.has_mutual_damping() ? 1.0 : 0.5) * duration;
@@ -156,20 +159,21 @@ std::vector<Vec3> PlanDeviations::mutual_changes(const ParticleSystem& system, c
     return changes;
 }
 
-/// Returns the flown pieces of a member; the plan itself if nothing else is recorded.
+/// Returns the flown pieces of a member, or the plan as one piece if nothing is recorded.
 std::span<const FlownPiece> PlanDeviations::flown_by(std::size_t member, const FlownPiece& plan) const {
     return entries_[member].flown.empty() ? std::span<const FlownPiece>(&plan, 1) : entries_[member].flown;
 }
 
-/// Returns the state, at a time in s, that forces see on a flown piece.
+/// Returns the state for the evaluation of forces at a time, in s, on a flown piece.
 PhaseState PlanDeviations::state_of(std::size_t member, const FlownPiece& piece, const Flight& plan,
                                     double time) const {
     if (entries_[member].keeps_start) return {plan.start.position, plan.start.velocity};
     return piece.at(time);
 }
 
-/// Returns the integrals over the step of a member's deviation from its plan in position and velocity, in m s and m. If
-/// its forces keep their start values, the integrals cancel the second half of the force change along the plan.
+/// Returns the integrals of a member's deviation from plan over the step, in m s for the position and in m for the
+/// velocity. If its forces keep their start values, the integrals are those of a member that stays in its start state.
+/// Only half of that deviation counts, because the plan already contains the mean of both forces.
 PhaseState PlanDeviations::summed_deviation(std::size_t member, const Flight& plan) const {
     const FlownPiece planned = piece_of(plan);
     if (entries_[member].keeps_start) {
@@ -187,8 +191,8 @@ PhaseState PlanDeviations::summed_deviation(std::size_t member, const Flight& pl
     return sum;
 }
 
-/// Returns the momentum changes by springs, in N s by member. Threads compute the impulses of single springs; the sums
-/// are in the order of the springs.
+/// Returns the momentum change that springs cause for each member, in N s. Threads compute the impulses of single
+/// springs. The impulses are added in the order of the springs.
 std::vector<Vec3> PlanDeviations::momentum_changes(const ParticleSystem& system,
                                                    const std::vector<Flight>& plans) const {
     std::vector<Vec3> sums(system.size());
@@ -207,7 +211,8 @@ std::vector<Vec3> PlanDeviations::momentum_changes(const ParticleSystem& system,
     return sums;
 }
 
-/// Returns the impulse of a spring on its first end, in N s, in excess of its impulse between the planned paths.
+/// Returns the impulse of a spring on its first end along the flown paths minus the impulse along the planned paths, in
+/// N s.
 Vec3 PlanDeviations::impulse_change(const ParticleSystem& system, const ParticleSystem::Bond& bond,
                                     const std::vector<Flight>& plans) const {
     const std::array<FlownPiece, 2> planned{piece_of(plans[bond.first]), piece_of(plans[bond.second])};
@@ -230,8 +235,8 @@ Vec3 PlanDeviations::impulse_change(const ParticleSystem& system, const Particle
     return sum;
 }
 
-/// Returns the velocity change of a member by forces on single particles on its flown path, less the change on its
-/// planned path, in m/s.
+/// Returns the velocity change, in m/s, that forces on single particles cause along the flown path of a member, minus
+/// the change along its planned path.
 Vec3 PlanDeviations::own_change(const ParticleSystem& system, std::size_t member, const Flight& plan) const {
     if (system.has_uniform_forces()) return {};
     const FlownPiece planned = piece_of(plan);

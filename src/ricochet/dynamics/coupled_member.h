@@ -1,6 +1,6 @@
 /// \file
-/// Members of a system of interacting particles: the action of the others on a member that leaves the plan of a step,
-/// and its reaction on them.
+/// Members of a system of interacting particles that leave the plan of a step: the action of the other members on them,
+/// and their reaction on the others.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@
 
 namespace ricochet {
 
-/// Piece of the path that a particle has flown in a step, or would fly.
+/// Piece of the path of a particle within a step, flown or planned.
 struct FlownPiece {
     Path path;
     double begin = 0.0;     ///< start time, in s
-    double duration = 0.0;  ///< followed duration, in s, at most that of the path
+    double duration = 0.0;  ///< duration of the piece, in s, at most that of the path
     Vec3 start_velocity;    ///< velocity at the start, in m/s
     Vec3 arrival;           ///< velocity at the end, in m/s
     bool is_free = false;   ///< true in free flight, false in contact
@@ -30,21 +30,22 @@ struct FlownPiece {
 /// Returns a whole flight as one piece.
 [[nodiscard]] FlownPiece piece_of(const Flight& flight);
 
-/// Acceleration of a member by the forces between members during a step, as on its planned path.
+/// Acceleration of a member on its planned path by the forces between members. It is linear in time over the step.
 struct MutualPull {
-    Vec3 start;          ///< in m/s^2, at the step's start
-    Vec3 slope;          ///< in m/s^3
+    Vec3 start;          ///< acceleration at the start of the step, in m/s^2
+    Vec3 slope;          ///< rate of change of the acceleration, in m/s^3
     double begin = 0.0;  ///< start time of the step, in s
 };
 
-/// Action of a member's springs on it in a step. It is constant, or computed from the member's position and the
-/// positions of the others on their planned flights.
+/// Acceleration of a member by its springs in a step. The acceleration is constant, or is computed from the member's
+/// current state and the states of the other members on their planned flights.
 class CoupledMember final : public Coupling {
 public:
     CoupledMember() = default;
-    /// Uses a constant acceleration, in m/s^2.
+    /// Uses the constant acceleration `held`, in m/s^2.
     explicit CoupledMember(const Vec3& held) : held_(held) {}
-    /// Follows the planned flights of all members (`plans`). Both references must outlive the object.
+    /// Computes the acceleration from `plans`, the planned flights of all members. Both references must outlive the
+    /// object.
     CoupledMember(const ParticleSystem& system, const std::vector<Flight>& plans, std::size_t member,
                   const MutualPull& mutual = {})
         : system_(&system), plans_(&plans), member_(member), mutual_(mutual) {}
@@ -60,34 +61,36 @@ private:
     MutualPull mutual_;
 };
 
-/// Members that have left the plan of a step, by an impact or in contact, and the resulting velocity corrections at its
-/// end.
+/// Members that have left the plan of a step by an impact or in contact, and the resulting velocity corrections at the
+/// end of the step.
 ///
-/// The plan gives both ends of a spring opposite impulses along the planned paths. If an end flies another path, the
-/// impulse changes by the difference of two integrals: the force between the flown paths less that between the planned
-/// paths. Both ends receive this change with opposite signs, so momentum is conserved to rounding. The bounce of one
-/// end thus acts on the other, with an effect of third order in the step. It does not matter whether an end flies,
-/// slides or rests. Positions stay, because they are the ends of certified segments.
+/// In the plan, the two ends of a spring receive opposite impulses along the planned paths. If an end flies another
+/// path, the spring's impulse changes. The change is the integral of the force along the flown paths minus its integral
+/// along the planned paths. The two ends receive this change with opposite signs, so momentum is conserved to rounding.
+/// In this way the bounce of one end acts on the other end. The effect is of third order in the step. The same formula
+/// applies to ends that fly, slide or rest. Positions are not corrected, because they are the ends of certified
+/// segments.
 ///
-/// Forces between members that are not split into pairs are corrected together. They are evaluated at the end of the
-/// plan, and again with each departed member moved by its mean departure. The difference is applied to all members.
-/// Momentum is conserved as well as the forces conserve it. The correction is exact to first order in the departures,
-/// so its error is of third order too.
+/// Forces between members that cannot be split into pairs are corrected together. They are evaluated in the planned end
+/// state, and again with each departed member displaced by its mean deviation from plan. The difference is applied to
+/// all members. The correction conserves momentum as well as the forces do. It is exact to first order in the
+/// deviations, so its error is also of third order.
 ///
-/// If contacts balanced a member's forces at the start of the step, its forces are kept at their start values. This
-/// applies to the reactions on other members too. Otherwise the forces would turn with a pair that rolls on itself
-/// while the contact loads do not, which would brake the pair. The error is of first order in the step.
+/// If contacts balanced a member's forces at the start of the step, its forces keep their start values. The reactions
+/// on other members keep their start values too. Otherwise the forces between two members that roll on each other would
+/// turn with the pair, but the contact loads would not. This mismatch would brake the pair. The error is of first order
+/// in the step.
 class PlanDeviations {
 public:
-    /// Clears all records. members: number of members; kind: the method that made the plan.
+    /// Clears all records. members: number of members. kind: method that made the plan.
     void reset(std::size_t members, IntegratorKind kind);
-    /// Records the path that a member has flown instead of its plan, and the velocity change by surfaces meanwhile, in
-    /// m/s. Several threads may call it for different members.
+    /// Records the path that a member has flown instead of its plan. velocity_change: velocity change by surfaces on
+    /// that path, in m/s. Several threads may call this function for different members.
     void record(std::size_t member, std::span<const FlownPiece> flown, const Vec3& velocity_change);
-    /// Records a member whose forces keep their values at the start of the step.
+    /// Records a member whose forces keep their values from the start of the step. velocity_change: as in record().
     void record_at_start(std::size_t member, const Vec3& velocity_change);
-    /// Corrects the velocities of the members at the end of the step, in m/s, for all recorded departures. moves: flags
-    /// of the members that forces move; others keep their velocities.
+    /// Corrects the end velocities of the members, in m/s, for all recorded deviations. moves: nonzero for members that
+    /// forces can move. Other members keep their velocities.
     void correct(const ParticleSystem& system, const std::vector<Flight>& plans, const std::vector<std::uint8_t>& moves,
                  std::vector<Vec3>& velocities) const;
     /// Returns true if the member has a record that differs from the plan.
@@ -109,9 +112,9 @@ private:
     [[nodiscard]] Vec3 own_change(const ParticleSystem& system, std::size_t member, const Flight& plan) const;
 
     struct Entry {
-        std::vector<FlownPiece> flown;  // empty: as planned
+        std::vector<FlownPiece> flown;  // empty if the member followed its plan
         Vec3 velocity_change;           // velocity change by surfaces, m/s
-        bool keeps_start = false;       // its forces keep their values at the start
+        bool keeps_start = false;       // the forces keep their values from the start of the step
     };
     std::vector<Entry> entries_;  // one per member
     IntegratorKind kind_ = IntegratorKind::ballistic;

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-// Allows GCC to vectorize a loop over rows: the columns do not overlap. Other compilers test for that at run time.
+// Tells GCC that the columns do not overlap, so that it vectorizes a loop over rows. Other compilers test for overlap
+// at run time.
 #if defined(__GNUC__) && !defined(__clang__)
 #define RICOCHET_INDEPENDENT_ROWS _Pragma("GCC ivdep")
 #else
@@ -13,18 +14,18 @@
 namespace ricochet {
 namespace {
 
-/// Columns that are eliminated before the columns after them are updated.
+/// Number of columns in a panel. A panel is eliminated before the columns to its right are updated.
 constexpr std::size_t kPanel = 24;
 
-/// The lower half of a matrix, by columns.
+/// Lower half of a matrix, stored by columns.
 struct Lower {
     double* values;
     std::size_t rows;
     [[nodiscard]] double* column(std::size_t j) const { return values + j * rows; }
 };
 
-/// Subtracts the contributions of columns k to `end` of L from columns j and j + 1, from row j on. It handles four
-/// columns of L at a time, because each loaded and stored number then serves four products.
+/// Subtracts the contributions of columns k to `end` of L from columns j and j + 1, from row j on. Four columns of L
+/// are processed together, so each load and store of an entry serves four products.
 void update_two(const Lower& m, std::size_t j, std::size_t k, std::size_t end) {
     double* const c0 = m.column(j);
     double* const c1 = m.column(j + 1);

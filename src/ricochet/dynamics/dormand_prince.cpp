@@ -31,7 +31,8 @@ constexpr std::array<double, kStages> kMiddle{6025192743.0 / 30085553152.0,     
                                               187940372067.0 / 1594534317056.0, -1776094331.0 / 19743644256.0,
                                               11237099.0 / 235043384.0};
 
-/// Returns the second derivative over the step, times its length squared, from values at 0, c and 1.
+/// Returns the second derivative times the squared length of the step, from values at the fractions 0, c and 1 of the
+/// step.
 Vec3 second_difference(const Vec3& at_0, const Vec3& at_c, const Vec3& at_1, double c) {
     const Vec3 first = (at_c - at_0) / c;
     const Vec3 second = (at_1 - at_c) / (1.0 - c);

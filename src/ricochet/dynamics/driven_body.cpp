@@ -18,7 +18,7 @@ namespace {
 /// A mathematical constant.
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-/// Returns true if all principal minors are at least `least` times the trace's power (Sylvester).
+/// Returns true if every principal minor of order k is at least `least` times the k-th power of the trace (Sylvester).
 bool is_definite(const SymmetricMatrix& a, double least) {
     const double size = a.trace();
     const auto is_good = [&](double minor, int power) { return minor >= least * std::pow(size, power); };
@@ -27,28 +27,29 @@ bool is_definite(const SymmetricMatrix& a, double least) {
            is_good(a.determinant(), 3);
 }
 
-/// Returns true for the inertia of a distribution of mass. The moments are above 0. Half the trace minus the tensor,
-/// which is the sum of m x x^T, has no negative eigenvalue; flat bodies have a zero one.
+/// Returns true if the tensor can be the inertia of a distribution of mass. Its moments must be above 0. Half the trace
+/// minus the tensor is the sum of m x x^T, so it must have no negative eigenvalue. A flat body has a zero eigenvalue.
 bool is_inertia(const SymmetricMatrix& a) {
-    // Local: rounding of an input value.
+    // Local: tolerance for the rounding of input values.
     constexpr double kRounding = 1e-12;
     const SymmetricMatrix spread = diagonal_matrix(0.5 * a.trace()) + (-1.0) * a;
     return std::isfinite(a.determinant()) && std::isnormal(a.determinant()) && is_definite(a, 0.0) &&
            a.determinant() > 0.0 && is_definite(spread, -kRounding);
 }
 
-/// A coordinate, relative to the rest position of the spring, and its rate.
+/// Coordinate of a joint, relative to the rest position of its spring, and its rate.
 struct JointState {
     double coordinate;
     double rate;
 };
 
-/// Returns the additional displacement and rate of x'' = n - stiffness x - damping x' after h seconds, relative to
-/// motion at the start rate. stiffness in 1/s^2, damping in 1/s; n changes linearly from n[0] to n[1]. The solution is
-/// a power series in time, in intervals short enough for fast convergence.
+/// Returns the displacement and rate of x'' = n - stiffness x - damping x' after h seconds, minus those of motion at
+/// the constant start rate. stiffness in 1/s^2, damping in 1/s. n changes linearly from n[0] to n[1]. The solution is a
+/// power series in time. The step is split into intervals that are short enough for fast convergence.
 JointState oscillated(const JointState& start, double stiffness, double damping, const std::array<double, 2>& n,
                       double h) {
-    // Local: the series ends below rounding. At most 10 000 intervals limit the cost.
+    // Local: after this number of terms, the rest of the series is below rounding. The limit of 10 000 intervals bounds
+    // the cost.
     constexpr int kMostTerms = 40;
     const int parts = 1 + static_cast<int>(std::min(1e4, h * (std::sqrt(stiffness) + damping)));
     const double s = h / parts;
@@ -56,7 +57,7 @@ JointState oscillated(const JointState& start, double stiffness, double damping,
     JointState gained{0.0, 0.0};
     for (int part = 0; part < parts; ++part) {
         double forcing = n[0] + part * s * slope;
-        // Terms of the coordinate's series: derivatives times s^k / k!.
+        // x and v are consecutive terms of the coordinate's series: derivatives times s^k / k!.
         double x = start.coordinate + part * s * start.rate + gained.coordinate;
         double v = s * (start.rate + gained.rate);
         gained.coordinate += s * gained.rate;
@@ -71,15 +72,16 @@ JointState oscillated(const JointState& start, double stiffness, double damping,
     return gained;
 }
 
-// Returns true if spring and damper can be integrated in closed form. Dry friction and a motor exclude this, because
-// the plan must reach their rates exactly.
+// Returns true if spring and damper can be integrated in closed form. Dry friction and a motor exclude the closed form,
+// because the plan must reach the rate that they enforce exactly.
 bool is_oscillator(const JointSettings& joint) {
     const bool is_steady = joint.friction == 0.0 && joint.motor_most == 0.0;
     return is_steady && (joint.spring > 0.0 || joint.damping > 0.0);
 }
 
-/// Returns the coefficients of t, t^2 and t^3 of the cubic through the state reached by spring and damper in h seconds.
-/// now: state at the start; predicted: estimated state at the end; accelerations: of all forces in these two states.
+/// Returns the coefficients of t, t^2 and t^3 of a cubic path. The path ends in the state that spring and damper reach
+/// after h seconds. now: state at the start. predicted: estimated state at the end. accelerations: accelerations by all
+/// forces in these two states.
 std::array<double, 3> oscillation(const JointSettings& joint, double inertia, const JointState& now,
                                   const JointState& predicted, const std::array<double, 2>& accelerations, double h) {
     const double stiffness = joint.spring / inertia;
@@ -144,7 +146,8 @@ BodyPath DrivenBody::plan_free(const ForceField& forces, const Wrench& load, dou
     BodyPath path{begin, end, map_, description_.center};
     path.center_path = {velocity_, 0.5 * first, h > 0.0 ? (last - first) / (6.0 * h) : Vec3{}};
     const Vec3 now = inverse_inertia(map_) * angular_momentum_;
-    // The angular velocity of the middle follows from half a turn with that of the start.
+    // The angular velocity in the middle of the step is computed after a rotation for half the step at the start's
+    // angular velocity.
     const auto turned = [&](const Vec3& spin, double duration) {
         BodyPath turning{0.0, duration, map_, {}};
         if (spin == Vec3{}) return turning;
@@ -164,7 +167,7 @@ BodyPath DrivenBody::plan_joint(const ForceField& forces, const Wrench& load, do
     const double h = end - begin;
     const double by_load = along_joint(load) / inertia_;
     const double first = joint_acceleration(forces, coordinate_, rate_, begin) + by_load;
-    // The prediction includes friction and motor, so that damping sees the resulting rate.
+    // The prediction includes friction and motor, so that the damping is computed from the resulting rate.
     const auto held_at = [&](double rate) { return h > 0.0 ? constrained_change(rate, h) / h : 0.0; };
     const double predicted = first + held_at(rate_ + h * first);
     const double reached = coordinate_ + h * (rate_ + 0.5 * h * predicted);
@@ -192,7 +195,7 @@ double DrivenBody::along_joint(const Wrench& wrench) const {
     return dot(axis_, description_.joint == JointKind::hinge ? wrench.moment : wrench.impulse);
 }
 
-/// Returns the acceleration, in rad/s^2 or m/s^2, without friction and motor.
+/// Returns the acceleration of the joint's coordinate, in rad/s^2 or m/s^2, without friction and motor.
 double DrivenBody::joint_acceleration(const ForceField& forces, double coordinate, double rate, double time) const {
     const JointSettings& joint = description_.settings;
     const bool turns = description_.joint == JointKind::hinge;
@@ -204,8 +207,8 @@ double DrivenBody::joint_acceleration(const ForceField& forces, double coordinat
     return (of_forces + of_joint) / inertia_;
 }
 
-/// Returns the change of a rate by motor and dry friction. The motor drives towards its rate against friction. Friction
-/// opposes the remaining motion, or stops it.
+/// Returns the change of the joint's rate by motor and dry friction. The motor accelerates the joint towards the target
+/// rate, against friction. Friction slows the resulting motion, or stops it.
 double DrivenBody::constrained_change(double rate, double duration) const {
     const JointSettings& joint = description_.settings;
     const double motor = joint.motor_most * duration / inertia_;
@@ -243,15 +246,15 @@ void DrivenBody::follow(const BodyPath& path, const Wrench& load, const Wrench& 
     const double h = path.end - path.begin;
     const auto moved = [h](const auto& c) { return h * (c[0] + h * (c[1] + h * c[2])); };
     const auto rate = [h](const auto& c) { return c[0] + h * (2.0 * c[1] + (3.0 * h) * c[2]); };
-    // Impulses that the path does not include yet.
+    // Impulses that the path does not include.
     const Wrench rest{wrench.impulse - h * load.impulse, wrench.moment - h * load.moment};
     const Vec3 before = center_;
     map_ = path.at(path.end).world_from_frame;
     center_ = map_.point(description_.center);
     if (description_.joint == JointKind::free) {
         velocity_ = rate(path.center_path);
-        // Moments refer to the start position of the centre. The load acted during the whole step; the rest acts at the
-        // end.
+        // Moments are about the start position of the centre. The load acted during the whole step. The other impulses
+        // act at the end of the step.
         const Vec3 mean =
             h * (path.center_path[0] / 2.0 + h * (path.center_path[1] / 3.0 + (0.25 * h) * path.center_path[2]));
         angular_momentum_ += h * load.moment - cross(mean, h * load.impulse);
@@ -296,7 +299,7 @@ Mobility DrivenBody::mobility() const {
 }
 
 double DrivenBody::quadratic_energy(const Wrench& wrench) const {
-    return std::max(0.0, mobility().seen_by(map_).energy_by(wrench));  // rounding can make it negative
+    return std::max(0.0, mobility().seen_by(map_).energy_by(wrench));  // rounding can make the energy negative
 }
 
 Vec3 DrivenBody::velocity_change(const Wrench& wrench, const Vec3& where) const {

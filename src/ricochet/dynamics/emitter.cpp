@@ -35,14 +35,14 @@ Particle launched_from(const FrameTree& frames, std::size_t frame, Particle part
 
 namespace {
 
-// Streams of random numbers: the high byte is the purpose, the rest is the emitter's number.
+// Stream keys of random numbers: the high byte encodes the purpose, the lower bytes the emitter's number.
 constexpr std::uint32_t kBirthStream = 0x01000000;
 constexpr std::uint32_t kRateStream = 0x02000000;
 constexpr std::uint32_t kRadiusStream = 0x03000000;
 constexpr std::uint32_t kAttributeStream = 0x04000000;
 constexpr std::uint32_t kLineageStream = 0x05000000;
 constexpr std::uint32_t kStreams = 0x01000000;
-constexpr std::uint32_t kOwnSeedStream = kStreams - 1;  // shared by the emitters with a seed of their own
+constexpr std::uint32_t kOwnSeedStream = kStreams - 1;  // shared by all emitters that have their own seed
 
 void require(bool condition, const EmitterDescription& emitter, const char* what) {
     if (!condition) throw InputError(fmt::format("emitter '{}': {}", emitter.name, what));
@@ -94,7 +94,8 @@ void check(const EmitterDescription& emitter) {
                 emitter.radius.mean >= emitter.radius.spread &&
                 emitter.radius.mean + emitter.radius.spread <= kLargestCoordinate,
             emitter, "every radius must be >= 0 and at most 1e75 m");
-    const std::size_t frames = emitter.frames ? emitter.frames->size() : 1;  // without frames: the world only
+    // Without frames, the world is the only frame.
+    const std::size_t frames = emitter.frames ? emitter.frames->size() : 1;
     require(emitter.frame < frames, emitter, "there is no such frame");
     require(!emitter.frames || !emitter.frames->is_scaled(emitter.frame), emitter,
             "its frame is scaled, expected one that keeps its size");
@@ -119,12 +120,12 @@ ShapeSampler sampler_of(const EmitterDescription& emitter) {
     }
 }
 
-// Returns the first draw of an attribute. It depends on the attribute's name, so other attributes do not change the
-// values.
+// Returns the index of an attribute's first draw in its stream. The index depends only on the attribute's name, so
+// adding other attributes does not change the values.
 std::uint32_t first_draw_of(std::string_view name) {
     std::uint32_t hash = 2166136261U;  // FNV-1a
     for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
-    return hash & ~3U;  // up to three draws
+    return hash & ~3U;  // leaves room for up to three draws
 }
 
 Vec3 clamped(const std::string& name, Vec3 value) {
@@ -205,7 +206,8 @@ std::vector<Particle> Emitter::births(double from, double to, std::uint64_t most
     require(std::isfinite(from) && std::isfinite(to), description_, "the times of births must be finite");
     std::vector<Particle> made;
     if (!(from < to)) return made;
-    constexpr std::uint64_t kAtOnce = 65536;  // a due birth needs far less memory than a particle
+    // The list stays small, because a due birth needs far less memory than a particle.
+    constexpr std::uint64_t kAtOnce = 65536;
     while (made.size() < most) {
         const std::vector<DueBirth> due = take_due(to, std::min(kAtOnce, most - made.size()));
         if (due.empty()) return made;
@@ -248,7 +250,8 @@ void Emitter::take(double to, Taken& taken) {
     }
 }
 
-// Takes up to `count` births at the given time, as far as the limits allow. Returns the number taken.
+// Takes up to `count` births at the given time, within the limits of the emitter and of the call. Returns the number
+// taken.
 std::uint64_t Emitter::take_at(double time, std::uint64_t count, Taken& taken) {
     const std::uint64_t allowed = std::min({count, description_.limit - born_, taken.most - taken.count});
     if (taken.is_listed) {
@@ -270,8 +273,8 @@ void Emitter::take_steady(double to, Taken& taken) {
     }
 }
 
-// Takes births period by period (seconds or frames). The state stays in the period of the next birth or of the next
-// call.
+// Takes births period by period (seconds or frames). The emitter's state remains in the last period visited, where the
+// next call continues.
 void Emitter::take_redrawn(double to, Taken& taken) {
     if (!(period_rate_.mean + period_rate_.spread > 0.0)) return;
     while (born_ < description_.limit && taken.count < taken.most) {
@@ -315,7 +318,7 @@ std::optional<Particle> Emitter::make(const DueBirth& birth, const BirthTest& te
     });
 }
 
-// made(particle): returns the particle that is tested and born.
+// made(particle): converts the drawn particle to the one that is tested and returned.
 template <class Made>
 std::optional<Particle> Emitter::place_by(const BirthTest& test, RandomSequence& random, Draw& drawn,
                                           const Made& made) const {
@@ -342,7 +345,7 @@ Particle Emitter::draw(std::uint64_t seed, std::uint64_t number) const {
 Emitter::Draw Emitter::draw(RandomSequence& random, std::uint64_t seed, std::uint64_t number) const {
     Draw drawn;
     Particle& particle = drawn.particle;
-    // Radii have their own stream, so giving particles a size does not change anything else about their birth.
+    // Radii have their own stream, so giving particles a size does not change the other drawn values.
     particle.radius = RandomSequence(seed, kRadiusStream | stream_, number)
                           .uniform_around(description_.radius.mean, description_.radius.spread);
     const Vec3 direction = draw_place(random, particle);
@@ -354,7 +357,7 @@ Emitter::Draw Emitter::draw(RandomSequence& random, std::uint64_t seed, std::uin
     return drawn;
 }
 
-// Draws another position with its direction; the speed along it stays.
+// Draws another position and launch direction, and keeps the drawn speed.
 void Emitter::place(RandomSequence& random, Draw& drawn) const {
     const Vec3 direction = draw_place(random, drawn.particle);
     drawn.particle.velocity = direction * drawn.speed + description_.velocity;

@@ -1,8 +1,8 @@
 /// \file
-/// Emitters: positions, times and initial states of births. The schedule of births depends on the emitter alone, never
-/// on the time step. Each birth has its own random numbers, keyed by the particle's number within the emitter.
-/// Method: W. T. Reeves, "Particle Systems: A Technique for Modeling a Class of Fuzzy Objects", ACM TOG 2(2), 1983
-/// (mean and spread for every attribute).
+/// Emitters: positions, times and initial states of births. The schedule of births depends only on the emitter, not on
+/// the time step. Each birth has its own random numbers. Their key is the particle's number within the emitter. Method:
+/// W. T. Reeves, "Particle Systems: A Technique for Modeling a Class of Fuzzy Objects", ACM TOG 2(2), 1983 (mean and
+/// spread for every attribute).
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@
 
 namespace ricochet {
 
-/// Mean and spread: values are uniform in [mean - spread, mean + spread).
+/// Uniform distribution over [mean - spread, mean + spread).
 struct MeanSpread {
     double mean = 0.0;
     double spread = 0.0;  ///< >= 0
@@ -37,7 +37,7 @@ struct MeanSpread {
 
 /// Event at which a particle gives birth.
 enum class BirthEvent {
-    life,    ///< during its whole life, at a rate
+    life,    ///< at a constant rate during its whole life
     death,   ///< at the end of its lifetime, or when a surface absorbs it
     impact,  ///< at an impact whose impulse reaches the threshold
     birth,   ///< at its own birth
@@ -45,89 +45,92 @@ enum class BirthEvent {
 
 /// Fate of the children of a cloud when their parent ends.
 enum class CloudEnd {
-    free,  ///< they then fly independently
-    die,   ///< they end with the parent
+    free,  ///< the children then fly independently
+    die,   ///< the children end with the parent
 };
 
-/// Children that move with their parent through flights and bounces. Each has a target position about the parent; the
-/// emitter's shape gives it in coordinates about the parent. A child receives its parent's acceleration and its
-/// velocity changes at impacts. The scene's forces act on a child only through its parent. Surfaces act on a child
-/// directly, and it keeps the resulting motion relative to the parent.
+/// Children that move with their parent through flights and bounces. Each child has a target position relative to the
+/// parent. The target is drawn from the emitter's shape, in coordinates relative to the parent. A child receives its
+/// parent's acceleration and the parent's velocity changes at impacts. The scene's forces act on a child only through
+/// its parent. Surfaces act on a child directly, and the child keeps the resulting motion relative to the parent.
 struct CloudRule {
     Vec3 turning;       ///< angular velocity, in rad/s, of the target positions about the parent
-    double pull = 0.0;  ///< acceleration towards the target per distance from it, in 1/s^2, >= 0
+    double pull = 0.0;  ///< acceleration towards the target divided by the distance from the target, in 1/s^2, >= 0
     double damping =
-        0.0;  ///< acceleration against the velocity relative to the target, per that velocity, in 1/s, >= 0
+        /// Deceleration divided by the velocity relative to the target, in 1/s, >= 0.
+        0.0;
     CloudEnd end = CloudEnd::free;
 };
 
-/// Rule by which an emitter's particles are born of other particles.
+/// Rule for an emitter whose particles are born from other particles.
 struct ParentRule {
     std::uint32_t emitter = 0;  ///< scene number of the emitter whose particles are the parents
     bool recursive = false;     ///< true: the children become parents too
     BirthEvent on = BirthEvent::life;
-    MeanSpread count{1.0, 0.0};      ///< children per death, impact or birth; rounded, negative draws count as 0
+    /// Number of children per death, impact or birth; draws are rounded, negative draws count as 0.
+    MeanSpread count{1.0, 0.0};
     double threshold_impulse = 0.0;  ///< least impulse, in N s, of an impact that gives birth; >= 0
-    /// True if the parent ends and its children share its mass and momentum. description.mass is then the weight of a
-    /// share, and radii follow from masses at the parent's density. Not available for life.
+    /// True if the parent ends and the children share its mass and momentum. EmitterDescription::mass is then the
+    /// weight of a share. Radii follow from the masses at the parent's density. Not available for BirthEvent::life.
     bool share = false;
     double inherit_velocity = 1.0;  ///< fraction of the parent's velocity that a child inherits; 1 when sharing
-    double inherit_color = 0.0;     ///< fraction, 0..1, of the parent's colour in the child's own
-    /// Not available for death or sharing. A child of a cloud inherits all of its parent's velocity.
+    double inherit_color = 0.0;     ///< fraction, 0..1, of the parent's colour in the child's colour
+    /// Rule of a cloud; nothing if the children fly independently. Not available for BirthEvent::death or sharing. A
+    /// child of a cloud inherits all of its parent's velocity.
     std::optional<CloudRule> cloud = std::nullopt;
 };
 
-// Attributes that change with a particle's age: factors keyed over its life. They are computed when a state is shown
-// and never stored, so they do not depend on the time step.
+// Attributes that change with a particle's age. Factors are given by keyed curves over the particle's life. The
+// products are computed when a state is shown and are never stored, so they do not depend on the time step.
 
 /// Factor of one attribute over a particle's life.
 struct LifeCurve {
-    std::string name;         ///< of the attribute
-    KeyedCurve<Vec3> factor;  ///< per component; a scalar attribute uses x
+    std::string name;         ///< name of the attribute
+    KeyedCurve<Vec3> factor;  ///< factor for each component; a scalar attribute uses x
     /// True if the curve's time is the elapsed fraction of the lifetime, 0..1; false if it is the age, in s.
     bool of_lifetime = true;
 };
 
-/// Returns a value multiplied by the factors of all curves of that name at an age, in s. With an infinite lifetime the
-/// elapsed fraction is 0.
+/// Returns a value multiplied by the factors of all curves for the attribute `name` at an age, in s. If the lifetime is
+/// infinite, its elapsed fraction is 0.
 [[nodiscard]] AttributeValue shown_value(std::span<const LifeCurve> curves, std::string_view name,
                                          const AttributeValue& value, double age, double lifetime);
 
-// Birth positions: points, surfaces and volumes, each filled uniformly.
+// Shapes of birth positions: points, surfaces and volumes. Births are distributed uniformly.
 
 /// All births at one point.
 struct PointShape {
     Vec3 center;
 };
-/// Uniform on a flat disk.
+/// Births distributed uniformly on a flat disk.
 struct DiskShape {
     Vec3 center;
     Vec3 normal{0, 0, 1};  ///< not zero
     double radius = 1.0;   ///< in m, > 0
 };
-/// Uniform in an axis-aligned box.
+/// Births distributed uniformly in an axis-aligned box.
 struct BoxShape {
     Vec3 center;
     Vec3 size{1, 1, 1};  ///< full edge lengths, in m, >= 0
 };
-/// Uniform in a ball, or on its surface.
+/// Births distributed uniformly in a ball, or on its surface.
 struct SphereShape {
     Vec3 center;
     double radius = 1.0;   ///< in m, > 0
-    bool surface = false;  ///< true: births on the sphere itself, launched along the outward normal
+    bool surface = false;  ///< true: births on the surface, launched along the outward normal
 };
-/// Uniform by area on a triangle mesh, launched along the triangle normals.
+/// Births distributed uniformly by area on a triangle mesh, launched along the triangle normals.
 struct MeshSurfaceShape {
     std::shared_ptr<const TriangleMesh> mesh;  ///< in world coordinates (transform already applied)
 };
-/// Uniform in a cone, launched along the line from the apex.
+/// Births distributed uniformly in a cone, launched along the line from the apex.
 struct ConeShape {
     Vec3 apex;
-    Vec3 axis{0, 0, 1};           ///< from the apex into the cone, not zero
-    double angle_degrees = 20.0;  ///< between the axis and the side, 0 (a line) to below 90
+    Vec3 axis{0, 0, 1};           ///< direction from the apex into the cone, not zero
+    double angle_degrees = 20.0;  ///< angle between the axis and the side, from 0 (a line) to less than 90
     double height = 1.0;          ///< in m, > 0
 };
-/// Uniform in the inside of a closed mesh, decided exactly (MeshInterior).
+/// Births distributed uniformly inside a closed mesh. The inside test is exact (MeshInterior).
 struct MeshVolumeShape {
     std::shared_ptr<const TriangleMesh> mesh;  ///< in world coordinates
 };
@@ -137,7 +140,7 @@ using EmitterShape =
 /// Birth position with its launch direction.
 struct LaunchPoint {
     Vec3 position;
-    Vec3 direction;  ///< the shape's own direction, of unit length
+    Vec3 direction;  ///< launch direction of the shape at this position, of unit length
 };
 
 class MeshInterior;
@@ -145,16 +148,17 @@ class MeshInterior;
 /// Draws positions in a shape.
 class ShapeSampler {
 public:
-    /// Throws InputError, with a sentence that names the fault, for a shape outside the stated ranges and for a mesh
-    /// without area. It also throws for a volume that is not closed or fills less than kSmallestFill of its box.
+    /// Throws InputError, with a sentence that names the fault, if the shape is outside the stated ranges. Also throws
+    /// for a mesh surface without area, and for a mesh volume that is not closed or fills less than kSmallestFill of
+    /// its box.
     explicit ShapeSampler(const EmitterShape& shape);
 
-    /// Draws a birth position. radius: of the particle, in m; on mesh surfaces the birth keeps this distance from the
-    /// surface.
+    /// Draws a birth position. radius: radius of the particle, in m. On a mesh surface the particle's centre keeps this
+    /// distance from the surface.
     [[nodiscard]] LaunchPoint draw(double radius, RandomSequence& random) const;
 
-    /// Smallest fraction of its box that a mesh's volume must fill, because the inside test is by rejection and must
-    /// end. Local: a limit of input values.
+    /// Smallest fraction of its box that a mesh volume must fill. Positions in a mesh volume are drawn by rejection
+    /// sampling, which would take too long below this fraction. Local: a limit of input values.
     static constexpr double kSmallestFill = 1e-4;
 
 private:
@@ -164,21 +168,21 @@ private:
     [[nodiscard]] LaunchPoint in_mesh(RandomSequence& random) const;
 
     EmitterShape shape_;
-    std::vector<double> cumulative_area_;         // of a mesh surface's triangles
-    std::shared_ptr<const MeshInterior> inside_;  // of a mesh volume
+    std::vector<double> cumulative_area_;         // running sums of the triangle areas of a mesh surface
+    std::shared_ptr<const MeshInterior> inside_;  // inside test of a mesh volume
     double cone_slope_ = 0.0;                     // tangent of a cone's angle
 };
 
-/// Returns points whose convex hull is that of the shape. Each circle of a round shape becomes `segments` inscribed
-/// points, at least 3. For a ball only the outline seen from `seen_from` is included. Throws InputError like
-/// ShapeSampler for values out of range, as do the two functions below.
+/// Returns points that have the same convex hull as the shape. Each circle of a round shape is replaced by `segments`
+/// points on it, at least 3. A ball is replaced by its outline as seen from `seen_from`. This function and the two
+/// functions below throw InputError for values out of range, like ShapeSampler.
 [[nodiscard]] std::vector<Vec3> outline_points(const EmitterShape& shape, const Vec3& seen_from, int segments);
-/// Returns a box around the shape.
+/// Returns a bounding box of the shape.
 [[nodiscard]] Box3 bounds(const EmitterShape& shape);
 
-// Size of an emitter on the screen of a reference camera. This is the second rule of W. T. Reeves for the births per
-// frame ("Particle Systems", ACM TOG 2(2), 1983, section 2.1): births are proportional to the screen area, so distant
-// emitters cost little. The camera belongs to the scene and does not depend on rendering.
+// Size of an emitter on the screen of a reference camera. It is used by the second rule of W. T. Reeves for the births
+// per frame ("Particle Systems", ACM TOG 2(2), 1983, section 2.1). With this rule births are proportional to the screen
+// area, so distant emitters cost little. The camera belongs to the scene and does not depend on rendering.
 
 /// Pinhole camera with square pixels.
 struct ReferenceCamera {
@@ -188,28 +192,29 @@ struct ReferenceCamera {
     double image_height = 720.0;          ///< pixels from the lower to the upper edge, > 0
 };
 
-/// Returns the area, in pixels, of the convex hull of the projected shape. Parts outside the image count too. The image
-/// plane has the distance s = image_height / (2 tan(field_of_view / 2)), in pixels. A point at depth d and distance r
-/// from the view axis is projected to s r / d. Round shapes are approximated by polygons with 256 corners.
-/// Throws InputError if a part of the shape is not in front of the camera, and for a camera outside those ranges.
+/// Returns the area, in pixels, of the convex hull of the projected shape. Parts outside the image are included. The
+/// image plane is at the distance s = image_height / (2 tan(field_of_view / 2)), in pixels. A point at depth d and
+/// distance r from the view axis is projected to s r / d. Round shapes are approximated by polygons with 256 corners.
+/// Throws InputError if a part of the shape is not in front of the camera, or if the camera is outside its stated
+/// ranges.
 [[nodiscard]] double screen_area(const EmitterShape& shape, const ReferenceCamera& camera);
 
 // Particles launched from a moving frame.
 
-/// Returns the particle in world coordinates at its birth, launched from a frame. Its position, velocity and spin are
-/// given in the frame's coordinates, relative to the frame. The frame has the rotation R, origin o and motion (v, w) at
-/// the birth time. The position becomes o + R p and the velocity R u + v + w x (R p). A sphere turned with the frame
-/// until then, so its spin becomes R s + w; a point has no spin. All other members are unchanged. Throws InputError
-/// unless frame < frames.size().
+/// Converts a particle at its birth from a frame to world coordinates. Its position p, velocity u and spin s are given
+/// in the frame's coordinates, relative to the frame. At the birth time the frame has the rotation R, origin o,
+/// velocity v and angular velocity w. The position becomes o + R p, and the velocity becomes R u + v + w x (R p). A
+/// sphere turns with the frame until its birth, so its spin becomes R s + w. A point has no spin. All other members are
+/// unchanged. Throws InputError unless frame < frames.size().
 [[nodiscard]] Particle launched_from(const FrameTree& frames, std::size_t frame, Particle particle);
 
 // The emitter itself.
 
 /// Mean and spread of an attribute, for each component.
 struct AttributeSpread {
-    std::string name;  ///< name of one of the scene's attributes, appearance included
-    Vec3 mean;         ///< a scalar attribute uses x
-    Vec3 spread;       ///< each component >= 0
+    std::string name;  ///< name of one of the scene's attributes, including the columns of appearance
+    Vec3 mean;         ///< mean; a scalar attribute uses x
+    Vec3 spread;       ///< spread, each component >= 0
 };
 
 /// One emitter, as described by a scene.
@@ -217,33 +222,36 @@ struct EmitterDescription {
     std::string name;
     EmitterShape shape;
     std::uint64_t burst = 0;  ///< particles born together at `start`
-    MeanSpread rate;          ///< particles per second from `start` to `stop`; redrawn for every second
-    /// Alternative: particles per frame (EmitterSurroundings::frame_rate), redrawn for every frame. Reeves's first
-    /// method.
+    MeanSpread rate;          ///< particles per second from `start` to `stop`, drawn anew for every second
+    /// Alternative rate: particles per frame (EmitterSurroundings::frame_rate), drawn anew for every frame. This is
+    /// Reeves's first method.
     MeanSpread rate_per_frame;
-    /// Alternative: particles per frame and pixel of the shape's screen_area(). Reeves's second method.
+    /// Alternative rate: particles per frame and per pixel of the shape's screen_area(). This is Reeves's second
+    /// method.
     MeanSpread rate_per_area;
     double start = 0.0;                                     ///< in s
-    double stop = std::numeric_limits<double>::infinity();  ///< end of the rate, in s
+    double stop = std::numeric_limits<double>::infinity();  ///< end of the births by a rate, in s
     /// Launch direction. Zero selects the shape's own direction: the disk, sphere or mesh normal, or a uniform random
     /// direction for point, box and ball.
     Vec3 direction;
-    double cone_degrees = 0.0;  ///< half angle of the cone about the direction, uniform in solid angle, 0..180
-    MeanSpread speed;           ///< in m/s
-    Vec3 velocity;              ///< in m/s, added to direction * speed
-    MeanSpread mass{1.0, 0.0};  ///< in kg, mean - spread > 0
-    MeanSpread radius;          ///< in m, mean - spread >= 0; 0 is a point
+    /// Half angle, 0..180, of the cone about the direction; launches are uniform in solid angle.
+    double cone_degrees = 0.0;
+    MeanSpread speed;                                                   ///< in m/s
+    Vec3 velocity;                                                      ///< in m/s, added to direction * speed
+    MeanSpread mass{1.0, 0.0};                                          ///< in kg, mean - spread > 0
+    MeanSpread radius;                                                  ///< in m, mean - spread >= 0; 0 is a point
     MeanSpread lifetime{std::numeric_limits<double>::infinity(), 0.0};  ///< in s
     std::uint64_t limit = std::numeric_limits<std::uint64_t>::max();    ///< largest total number of births
-    /// Frames of the scene, or null. With a null pointer, shape, direction and velocity are in world coordinates.
-    /// Otherwise they are in the coordinates of frame number `frame` at the time of birth, see launched_from().
+    /// Frames of the scene, or null. If null, shape, direction and velocity are in world coordinates. Otherwise they
+    /// are in the coordinates of frame number `frame` at the time of birth, see launched_from().
     std::shared_ptr<const FrameTree> frames = nullptr;
     std::size_t frame = 0;
     std::vector<AttributeSpread> attributes;  ///< colours and opacities are clamped to 0..1, sizes to >= 0
-    std::vector<LifeCurve> curves;            ///< factors for attributes over life, applied when a state is shown
-    std::optional<std::uint64_t> seed;        ///< nothing: the scene's seed and the emitter's index in the scene
-    /// Rule for births from particles. burst, start and stop are then unused, and the shape serves only the positions
-    /// of a cloud.
+    std::vector<LifeCurve> curves;  ///< factors of attributes over a particle's life, applied when a state is shown
+    /// Own seed; if empty, the random numbers depend on the scene's seed and the emitter's index.
+    std::optional<std::uint64_t> seed;
+    /// Rule for births from other particles. If it is given, burst, start and stop are unused, and the shape is used
+    /// only for the target positions of a cloud.
     std::optional<ParentRule> parent;
 };
 
@@ -252,82 +260,86 @@ struct EmitterDescription {
     return emitter.parent && emitter.parent->cloud.has_value();
 }
 
-/// Scene data that an emitter needs.
+/// Scene data that an emitter depends on.
 struct EmitterSurroundings {
-    double frame_rate = 24.0;  ///< frames per second for rates per frame, > 0; independent of output and time step
+    double frame_rate = 24.0;  ///< frames per second for rates per frame, > 0; does not depend on output or time step
     std::optional<ReferenceCamera> camera = std::nullopt;   ///< for rates per screen area
     std::span<const AttributeDescription> attributes = {};  ///< columns of the particles
 };
 
-/// Test of a particle in world coordinates that returns true if it may be born there. It must be pure.
+/// Test that returns true if a particle, in world coordinates, may be born at its position. The test must be pure.
 using BirthTest = std::function<bool(const Particle&)>;
 
 /// Scheduled birth.
 struct DueBirth {
-    std::uint64_t number = 0;  ///< within its emitter
+    std::uint64_t number = 0;  ///< number of the birth within its emitter
     double time = 0.0;         ///< in s
 };
 
 /// Births of one emitter in time order.
 class Emitter {
 public:
-    /// Number of new positions tried for a birth that the test rejects, before the birth is skipped. Fewer tries skip
-    /// births in narrow spaces that have a free position. More tries cost more in spaces without one. Local, because
-    /// public headers cannot include the tolerances.
+    /// Largest number of new positions that are tried if the test rejects a birth. After that the birth is skipped.
+    /// With fewer tries, births are skipped in narrow spaces that have a free position. With more tries, spaces without
+    /// a free position cost more time. Local, because public headers cannot include the tolerances.
     static constexpr int kMostRedraws = 64;
 
-    /// seed: the scene's seed; number: this emitter's number in the scene, below 2^24 - 1. Throws InputError, naming
-    /// the member, if the description is outside its stated ranges.
+    /// seed: the scene's seed. number: this emitter's number in the scene, below 2^24 - 1. Throws an InputError that
+    /// names the member if the description is outside its stated ranges.
     Emitter(EmitterDescription description, std::uint64_t seed, std::uint32_t number,
             const EmitterSurroundings& surroundings = {});
 
-    /// Returns the particles born in [from, to), in birth order, with everything set but the id, which is 0. An emitter
-    /// with a parent returns none. Each call must start at the end of the last one, and the first call at 0. Throws
-    /// InputError for non-finite times. The division of time into calls does not change a bit.
+    /// Returns the particles born in [from, to), in birth order. Their ids are 0, and all other members are set. An
+    /// emitter with a parent rule returns none. The first call must start at 0, and each later call at the end of the
+    /// call before. Throws InputError for non-finite times. The results have the same bits for any division of time
+    /// into calls.
     ///
-    /// The burst is born at `start`. After that, birth k happens when the integral of the rate since `start` passes k +
-    /// 1/2. The rate is redrawn for every whole second (or frame) since `start`; negative draws count as 0.
+    /// The burst is born at `start`. Birth k after the burst happens when the integral of the rate since `start`
+    /// reaches k + 1/2. The rate is drawn anew for every whole second (or frame) since `start`. Negative draws count as
+    /// 0.
     ///
-    /// most: limit of the particles that are made and returned. Later births still count, see born().
+    /// most: largest number of particles that are made and returned. Births beyond this limit are still counted by
+    /// born().
     ///
-    /// test: applied to each particle that is made. A rejected particle gets another position of the shape, with its
-    /// direction, by further draws of the same sequence, up to kMostRedraws times. Everything else stays. A birth is
-    /// skipped and counted by refused() if every try is rejected, or at a point, which has no other position. An empty
-    /// test accepts all.
+    /// test: applied to each particle that is made. For a rejected particle, another position of the shape and its
+    /// direction are drawn from the same sequence, up to kMostRedraws times. All other members keep their values. If
+    /// every try is rejected, the birth is skipped and counted by refused(). A PointShape has no other position, so a
+    /// rejected birth is skipped at once. An empty test accepts all particles.
     [[nodiscard]] std::vector<Particle> births(double from, double to,
                                                std::uint64_t most = std::numeric_limits<std::uint64_t>::max(),
                                                const BirthTest& test = {});
-    /// Returns the number of births so far, rejected ones included.
+    /// Returns the number of births so far, including rejected births.
     [[nodiscard]] std::uint64_t born() const { return born_; }
     /// Returns the number of births that the test of births() has rejected.
     [[nodiscard]] std::uint64_t refused() const { return refused_; }
 
-    // Steps of births(), for callers that make particles in several threads or processes.
+    // Parts of births(), for callers that make particles in several threads or processes.
 
-    /// Returns the next births before `to`, in s, in birth order, at most `most`. They count as born() from now on, and
-    /// the next call continues after them. An emitter with a parent returns none. Throws InputError for a non-finite
-    /// time.
+    /// Returns the next births before the time `to`, in s, in birth order, at most `most`. The returned births are
+    /// counted by born(), and the next call continues after them. An emitter with a parent rule returns none. Throws
+    /// InputError for a non-finite time.
     [[nodiscard]] std::vector<DueBirth> take_due(double to, std::uint64_t most);
-    /// Counts all remaining births before `to` as born() without making their particles. Throws like take_due().
+    /// Skips all remaining births before the time `to`, in s. They are counted by born(), but no particles are made.
+    /// Throws like take_due().
     void skip_due(double to);
-    /// Makes the particle of a birth, as births() does; returns nothing if the test rejects every position. It depends
-    /// on nothing else. It is thread-safe if the test is.
+    /// Makes the particle of a birth in the same way as births(). Returns nothing if the test rejects every position.
+    /// The result depends only on the emitter, the birth and the test. The function is thread-safe if the test is.
     [[nodiscard]] std::optional<Particle> make(const DueBirth& birth, const BirthTest& test) const;
 
     [[nodiscard]] const EmitterDescription& description() const { return description_; }
     /// Returns the number of the emitter in its scene.
     [[nodiscard]] std::uint32_t number() const { return number_; }
 
-    /// Returns the particle given by the random numbers of (seed, number), born at time 0: a pure function. Every
-    /// attribute that the description does not name is missing_attribute().
+    /// Returns the particle drawn with the random numbers of (seed, number), born at time 0. The function is pure. An
+    /// attribute that the description does not name has the value missing_attribute().
     [[nodiscard]] Particle draw(std::uint64_t seed, std::uint64_t number) const;
-    /// Draws a particle, and new positions as births() does until the test accepts one; returns nothing if it rejects
-    /// all.
+    /// Draws a particle, and new positions until the test accepts one, in the same way as births(). Returns nothing if
+    /// the test rejects all positions.
     [[nodiscard]] std::optional<Particle> draw(std::uint64_t seed, std::uint64_t number, const BirthTest& test) const;
-    /// Returns a uniform number in [mean - spread, mean + spread) from a separate stream, for draws that do not belong
-    /// to a single particle. purpose: 0..255.
+    /// Returns a uniform number in [mean - spread, mean + spread) from a separate stream. It is for draws that do not
+    /// belong to a single particle. purpose: number of the stream, 0..255.
     [[nodiscard]] double draw_once(std::uint64_t seed, std::uint32_t purpose, const MeanSpread& pair) const;
-    /// Returns the index of the attribute's column; nothing if there is none.
+    /// Returns the index of the attribute's column; nothing if there is no such column.
     [[nodiscard]] std::optional<std::size_t> column(std::string_view name) const;
     /// Returns true if the description gives values for the attribute of a column.
     [[nodiscard]] bool sets(std::size_t column) const;
@@ -342,7 +354,7 @@ private:
     };
     struct Draw {
         Particle particle;
-        double speed = 0.0;  ///< in m/s, along the direction
+        double speed = 0.0;  ///< launch speed along the direction, in m/s
     };
     [[nodiscard]] Draw draw(RandomSequence& random, std::uint64_t seed, std::uint64_t number) const;
     [[nodiscard]] Vec3 draw_place(RandomSequence& random, Particle& particle) const;
@@ -362,11 +374,11 @@ private:
     EmitterDescription description_;
     std::uint64_t seed_;
     std::uint32_t number_;
-    /// Stream of its random numbers: its number, or a stream shared by emitters with their own seed.
+    /// Stream of this emitter's random numbers: its number, or the stream shared by all emitters with their own seed.
     std::uint32_t stream_;
     ShapeSampler shape_;
     std::vector<AttributeDescription> columns_;
-    std::vector<std::size_t> attribute_columns_;  ///< of the description's attributes
+    std::vector<std::size_t> attribute_columns_;  ///< columns of the description's attributes
     double cone_height_ = 0.0;                    ///< 1 - cos(cone angle)
     MeanSpread period_rate_;                      ///< particles per period
     double periods_per_second_ = 1.0;             ///< 1, or the frame rate

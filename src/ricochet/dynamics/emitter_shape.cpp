@@ -67,8 +67,8 @@ struct CheckShape {
     void operator()(const MeshVolumeShape& volume) const { require_mesh(volume.mesh.get()); }
 };
 
-// Returns running sums of the triangle areas, so that a uniform draw finds its triangle by binary search. Degenerate
-// triangles have no normal and add nothing, even if rounding gives them an area.
+// Returns running sums of twice the triangle areas. A uniform draw finds its triangle in them by binary search.
+// Degenerate triangles have no normal, so they add nothing, even if their computed area is above 0 by rounding.
 std::vector<double> cumulative_areas(const TriangleMesh& mesh) {
     std::vector<double> sums;
     sums.reserve(mesh.triangles.size());
@@ -135,7 +135,7 @@ struct OutlinePoints {
         }
         return points;
     }
-    // Returns points on the circle where lines of sight are tangent to the ball.
+    // Returns points on the circle at which lines of sight are tangent to the ball.
     std::vector<Vec3> operator()(const SphereShape& sphere) const {
         const Vec3 away = sphere.center - seen_from;
         const double distance = length(away);
@@ -163,8 +163,9 @@ struct OutlinePoints {
     }
 };
 
-/// Returns true if a random point of a mesh's box is inside. A sheet with both sides listed has no interior. draw()
-/// would never end there, nor within any useful time for a mesh that fills less than a millionth of its box.
+/// Returns true if one of many random points of the mesh's box is inside the mesh. A sheet whose triangles are listed
+/// on both sides has no interior, so draw() would never end. In a mesh that fills less than a millionth of its box,
+/// draw() would take too long.
 bool has_interior(const MeshInterior& inside) {
     constexpr int kMostTries = 1 << 20;
     RandomSequence random(0, 0, 0);
@@ -217,7 +218,8 @@ LaunchPoint ShapeSampler::on_disk(const DiskShape& disk, RandomSequence& random)
     return {disk.center + disk.radius * (first * p.x + second * p.y), normal};
 }
 
-// The largest of three uniform numbers has the distribution x^3, like the height in a cone.
+// The largest of three uniform numbers has the cumulative distribution x^3. The relative height of a uniform point in a
+// cone has the same distribution.
 LaunchPoint ShapeSampler::in_cone(const ConeShape& cone, RandomSequence& random) const {
     const double first_draw = random.uniform();
     const double second_draw = random.uniform();
@@ -225,12 +227,12 @@ LaunchPoint ShapeSampler::in_cone(const ConeShape& cone, RandomSequence& random)
     const Vec3 axis = normalized(cone.axis);
     const auto [first, second] = tangent_frame(axis);
     const Vec3 p = cone_slope_ * random.in_unit_disk();
-    const Vec3 line = axis + first * p.x + second * p.y;  // from the apex to the height 1
+    const Vec3 line = axis + first * p.x + second * p.y;  // vector from the apex to the height 1
     return {cone.apex + height * line, normalized(line)};
 }
 
-// Rounding moves the point by a few ulp of the corners, not of the point. The contact offset therefore uses the
-// corners.
+// Rounding moves the point by a few ulp of the corners' coordinates, which can exceed the ulp of the point. The contact
+// offset is therefore computed from the corners.
 LaunchPoint ShapeSampler::on_mesh(const TriangleMesh& mesh, double radius, RandomSequence& random) const {
     const double area = random.uniform() * cumulative_area_.back();
     const auto found = std::upper_bound(cumulative_area_.begin(), cumulative_area_.end() - 1, area);
@@ -324,7 +326,7 @@ double screen_area(const EmitterShape& shape, const ReferenceCamera& camera) {
     require(camera.image_height > 0.0 && std::isfinite(camera.image_height),
             "the reference camera's image height must be > 0 pixels");
     const Vec3 forward = normalized(camera.target - camera.position);
-    const auto [right, up] = tangent_frame(forward);                // turning the image does not change areas
+    const auto [right, up] = tangent_frame(forward);                // a rotation of the image does not change areas
     const double half_view = camera.field_of_view_degrees / 720.0;  // in turns
     const double scale = 0.5 * camera.image_height * sine_of_turns(half_view + 0.25) / sine_of_turns(half_view);
     std::vector<Point2> seen;

@@ -1,5 +1,5 @@
 /// \file
-/// Path of a particle inside a step, as planned by each integrator.
+/// Path of a particle within a step, as planned by each integrator.
 #pragma once
 
 #include <cstdint>
@@ -21,48 +21,50 @@ struct PhaseState {
 
 /// Planned motion of a particle until the end of the step or the next impact.
 struct Flight {
-    Path path;          ///< the trajectory
+    Path path;          ///< path of the particle
     Vec3 acceleration;  ///< acceleration by the forces at the start, in m/s^2
-    /// Duration, in s, of the force that the velocity along the path already contains; 0 if the velocity builds up.
+    /// Duration, in s, for which the force has already been applied to the velocity along the path. 0 if the velocity
+    /// changes gradually.
     double kick_duration = 0.0;
-    ForceInput start{};          ///< state at the start of the flight; one-step methods step from it again
-    Vec3 end_velocity;           ///< velocity at the end of the path, in m/s
-    double next_duration = 0.0;  ///< step, in s, that an adaptive method would try next; 0: unknown
-    /// True if velocities along the path come from a shorter step instead of the path's derivative.
+    ForceInput start{};  ///< state at the start of the flight; one-step methods repeat their step from this state
+    Vec3 end_velocity;   ///< velocity at the end of the path, in m/s
+    double next_duration = 0.0;  ///< duration, in s, that an adaptive method would try next; 0: unknown
+    /// True if velocities along the path are computed by a shorter step of the method, not by the path's derivative.
     bool steps_again = false;
     // For adaptive methods:
-    double shortest = 0.0;       ///< shortest substep, in s, of the step that the flight belongs to
+    double shortest = 0.0;       ///< shortest allowed substep, in s, in the step that contains the flight
     std::uint32_t substeps = 0;  ///< substeps of that step so far, including this one
-    bool is_coarse = false;      ///< the tolerance is not met, because the substep could not be shorter
+    bool is_coarse = false;      ///< true if the shortest allowed substep does not meet the tolerance
 
     [[nodiscard]] bool has_spent_substeps() const { return substeps >= kMostSubsteps; }
 };
 
-/// Returns the flight of `duration` seconds that starts at the beginning of a step or at birth. An adaptive method may
-/// end it earlier, at the end of its first substep.
+/// Returns the flight of `duration` seconds from the beginning of a step or from birth. With an adaptive method the
+/// flight may be shorter: it ends with the first substep.
 ///
-/// forward_euler moves in a straight line with the current velocity. velocity_verlet (L. Verlet 1967; velocity form: W.
-/// C. Swope et al., J. Chem. Phys. 76, 1982) follows the parabola of the first force. Forces that depend on the
-/// velocity see the velocity predicted with that force.
+/// forward_euler moves the particle in a straight line with the current velocity. velocity_verlet (L. Verlet 1967;
+/// velocity form: W. C. Swope et al., J. Chem. Phys. 76, 1982) follows the parabola of the force at the start. The
+/// force at the end is evaluated with the velocity predicted from the force at the start.
 ///
 /// dormand_prince (J. R. Dormand, P. J. Prince, J. Comput. Appl. Math. 6, 1980) halves its step until three estimates
 /// are within the tolerance: the embedded errors of position and velocity, and the distance between trajectory and path
 /// (h^4 / 384 times the fourth derivative). It stops halving at the shortest allowed substep (kShortestSubstep).
 ///
-/// symplectic_euler is a splitting: one kick with the force of the whole step, then force-free drift. An impact
-/// reflects the drift, and the forces do not act again in that step. Kick and drift are each exact flows (with elastic
-/// walls the drift is a billiard). The method therefore stays symplectic with bounces, and the height of an elastic
-/// ball stays bounded. Another kick after each impact would lose energy of the order g * dt * speed at every bounce.
-/// Source: E. Hairer, C. Lubich, G. Wanner, "Geometric Numerical Integration", 2nd ed., section VI.3 (splitting).
+/// symplectic_euler is a splitting method: one kick with the force of the whole step, then a force-free drift. An
+/// impact reflects the drift, and the forces do not act again in that step. Kick and drift are each an exact
+/// Hamiltonian flow. With elastic walls, the drift is a billiard. The method therefore stays symplectic with bounces,
+/// and the height of an elastic ball stays bounded. A second kick after an impact would lose energy of the order g * dt
+/// * speed at every bounce. Source: E. Hairer, C. Lubich, G. Wanner, "Geometric Numerical Integration", 2nd ed.,
+/// section VI.3 (splitting).
 ///
 /// implicit_euler kicks with the force at the end of the step, found by Newton's method, and then drifts. An impact
-/// reflects the drift, as with symplectic_euler. It is for stiff forces and damps motion that is faster than the step.
-/// Source: E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", section IV.3.
+/// reflects the drift, as with symplectic_euler. The method suits stiff forces. It damps oscillations with periods
+/// shorter than the step. Source: E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", section IV.3.
 ///
-/// ballistic keeps the acceleration constant over the step, and evaluates it again after each impact.
+/// ballistic keeps the acceleration constant over the step. It evaluates the acceleration again after each impact.
 ///
-/// midpoint and rk4 make their ordinary step. The path is the cubic Hermite polynomial through both end states. Its
-/// error is of fourth order in the duration, and so is the error of the time of impact (E. Hairer, S. P. Norsett, G.
+/// midpoint and rk4 make their standard step. The path is the cubic Hermite polynomial through both end states. The
+/// errors of the path and of the time of impact are of fourth order in the duration (E. Hairer, S. P. Norsett, G.
 /// Wanner, "Solving Ordinary Differential Equations I", section II.6, dense output). If the acceleration is uniform,
 /// the path is the exact parabola.
 [[nodiscard]] Flight begin_flight(const Integrator& integrator, const ForceField& forces, const ForceInput& state,
@@ -70,26 +72,27 @@ struct Flight {
 /// Returns the flight that continues after an impact, with the reflected velocity in `state`.
 [[nodiscard]] Flight resume_flight(const Integrator& integrator, const ForceField& forces, const ForceInput& state,
                                    const Flight& before, double duration);
-/// Returns the velocity at flight time s, in s, which an impact reflects and the end of the step stores. It is the
-/// velocity of a step of length s from the flight's start, because the derivative of the Hermite path would lose an
-/// order.
+/// Returns the velocity at flight time s, in s. Impacts reflect this velocity, and the end of the step stores it. It is
+/// computed by a step of length s from the flight's start, because the derivative of the Hermite path is less accurate
+/// by one order.
 [[nodiscard]] Vec3 velocity_at(const Integrator& integrator, const ForceField& forces, const Flight& flight, double s);
 
-/// Returns a parabola for an acceleration that depends on neither position, velocity nor time. If nothing is hit, the
-/// ends of all further steps of `time_step` seconds lie on it, up to rounding. It begins with the flight. The flight
-/// and its successors lie within |acceleration| time_step^2 / 8 of it. duration: in s, at least that of the flight.
+/// Returns a parabola for an acceleration that depends on neither position, velocity nor time. The parabola begins at
+/// the start of the flight. If the particle hits nothing, all further steps of `time_step` seconds end on the parabola,
+/// up to rounding. The distance of this and all further flights from the parabola is at most |acceleration| time_step^2
+/// / 8. duration: in s, at least that of the flight.
 [[nodiscard]] Path look_ahead_path(const Integrator& integrator, const Flight& flight, double time_step,
                                    double duration);
 
-/// Returns position and velocity at flight time s, in s. midpoint, rk4 and dormand_prince step from the flight's start
-/// again; the other methods evaluate the flight's path.
+/// Returns position and velocity at flight time s, in s. midpoint, rk4 and dormand_prince repeat a step of length s
+/// from the flight's start. The other methods evaluate the flight's path.
 [[nodiscard]] PhaseState state_at(const Integrator& integrator, const ForceField& forces, const Flight& flight,
                                   double s);
 
-// Steps of particles that hit nothing: the end state of begin_flight() without its path.
+// Steps of particles that hit nothing: the same end state as begin_flight(), without a path.
 
-/// One step under an acceleration that depends on neither position, velocity nor time, prepared for many particles. Its
-/// end state has the same bits as the end of begin_flight()'s flight.
+/// One step under an acceleration that depends on neither position, velocity nor time. The object is reused for many
+/// particles. The end state has the same bits as the end of the flight from begin_flight().
 class FreeFlight {
 public:
     /// acceleration in m/s^2, duration in s.
@@ -102,13 +105,14 @@ public:
         }
     }
 
-    /// Returns the state at the end of the step. A kick of zero changes no bit, because flush_tiny() leaves only one
-    /// kind of zero.
+    /// Returns the state at the end of the step. A zero kick changes no bit of the position, because flush_tiny()
+    /// removes negative zeros.
     [[nodiscard]] PhaseState step(const Vec3& position, const Vec3& velocity) const {
         return {flush_tiny(position + duration_ * (velocity + drift_kick_)), velocity + kick_};
     }
 
-    /// Returns true if the velocity does not change, except for the signs of its zeros in the first step.
+    /// Returns true if the velocity does not change. Only negative zeros in the velocity can become positive in the
+    /// first step.
     [[nodiscard]] bool is_straight() const { return kick_ == Vec3{} && drift_kick_ == Vec3{}; }
     [[nodiscard]] double duration() const { return duration_; }
 
@@ -118,31 +122,32 @@ private:
     Vec3 drift_kick_;
 };
 
-// First-order motion: the path of a particle that moves with a flow, x' = g(x, t), by the integrators that support it.
+// First-order motion: the path of a particle that moves with a flow, x' = g(x, t). Some integrators support it.
 
 /// Piece of a path along a flow.
 struct FlowPath {
     Path path;
-    double next_duration = 0.0;  ///< step, in s, that an adaptive method would try next; 0: unknown
-    bool is_coarse = false;      ///< the tolerance is not met, because the substep could not be shorter
+    double next_duration = 0.0;  ///< duration, in s, that an adaptive method would try next; 0: unknown
+    bool is_coarse = false;      ///< true if the shortest allowed substep does not meet the tolerance
 };
 
-/// Returns true for the methods of first-order motion: forward_euler, midpoint, rk4 and dormand_prince. The other
-/// methods step position and velocity separately, which has no meaning for first-order motion.
+/// Returns true for the methods that support first-order motion: forward_euler, midpoint, rk4 and dormand_prince. The
+/// other methods advance position and velocity separately, but first-order motion has no velocity as a state.
 [[nodiscard]] bool carries_along_flows(IntegratorKind kind);
 
-/// Returns the path from a position at a time over `duration` seconds (> 0). dormand_prince may end it earlier, at the
-/// end of its first substep. It tries `first` seconds and goes no shorter than `shortest` seconds (0: kShortestSubstep
-/// of the duration). Throws InputError for a method without first-order motion.
+/// Returns the path from `position` at `time` over `duration` seconds (> 0). With dormand_prince the path may be
+/// shorter: it ends with the first substep. That method first tries `first` seconds, and no substep shorter than
+/// `shortest` seconds (0: kShortestSubstep of the duration). Throws InputError for a method that does not support
+/// first-order motion.
 ///
-/// forward_euler is a straight line with the flow's velocity at the start (first order). midpoint (second order) and
-/// rk4 (fourth) make their ordinary step. The path is the cubic Hermite polynomial through both ends with the flow's
-/// velocities there, whose error is of fourth order in the duration.
+/// forward_euler, of first order, follows a straight line with the flow's velocity at the start. midpoint, of second
+/// order, and rk4, of fourth order, make their standard step. Their path is the cubic Hermite polynomial through both
+/// ends with the flow's velocities there. The error of the polynomial is of fourth order in the duration.
 ///
 /// dormand_prince halves its step until two errors are within the position tolerance. One is the embedded error
 /// estimate. The other is the distance between the cubic and the method's own interpolant in the middle of the step,
-/// where it is largest. The velocity tolerance plays no role. Sources: see integrator.h; interpolant: L. F. Shampine,
-/// "Some practical Runge-Kutta formulas", Mathematics of Computation 46, 1986.
+/// where this distance is largest. The velocity tolerance is unused. Sources: see integrator.h; interpolant: L. F.
+/// Shampine, "Some practical Runge-Kutta formulas", Mathematics of Computation 46, 1986.
 [[nodiscard]] FlowPath flow_path(const Integrator& integrator, const FlowField& flow, const Vec3& position, double time,
                                  double duration, double first, double shortest = 0.0);
 

@@ -30,8 +30,8 @@ FlowPath rk4_path(const FlowField& flow, const Vec3& x, double time, double h) {
     return through(flow, x, g1, x + (h / 6.0) * (g1 + 2.0 * (g2 + g3) + g4), time, h);
 }
 
-// Halves the step instead of using a formula of the error, whose powers would differ between systems in their last
-// bits.
+// Finds the step by halving. The usual formula for the next step uses powers of the error, and their last bits differ
+// between systems.
 FlowPath adaptive_path(double tolerance, const FlowField& flow, const Vec3& x, double time, double duration,
                        double first, double shortest) {
     tolerance = attainable({tolerance, 0.0}, x, Vec3{}).position;
@@ -45,7 +45,7 @@ FlowPath adaptive_path(double tolerance, const FlowField& flow, const Vec3& x, d
         if (error <= 1.0 || 0.5 * h < shortest) break;
     }
     double next = error < kErrorToDouble ? 2.0 * h : h;
-    if (h >= duration && first > h) next = first;  // the step ended here, not the method
+    if (h >= duration && first > h) next = first;  // the duration limited the step, not the error
     return {hermite_path(x, step.start_velocity, step.end, step.end_velocity, h), next, !(error <= 1.0)};
 }
 

@@ -60,10 +60,10 @@ FlowPointer steady_flow(Velocity velocity) {
     return std::make_shared<SteadyFlow<Velocity>>(std::move(velocity));
 }
 
-// Returns (1 - exp(-q)) / q, the profile of Lamb and Oseen. Near the axis it uses the series, because the difference
-// would cancel.
+// Returns (1 - exp(-q)) / q, the profile of Lamb and Oseen. Near the axis the function uses a series, because 1 -
+// exp(-q) would suffer from cancellation.
 double lamb_oseen(double q) {
-    // Local: the series is exact to rounding below it.
+    // Local: below this value the series is exact to rounding.
     constexpr double kNearAxis = 1e-2;  // the first omitted term is q^6 / 5040
     if (q >= kNearAxis) return (1.0 - portable_exp(-q)) / q;
     return 1.0 - q / 2.0 * (1.0 - q / 3.0 * (1.0 - q / 4.0 * (1.0 - q / 5.0 * (1.0 - q / 6.0))));
@@ -139,7 +139,7 @@ FlowPointer make_vortex(const VortexSettings& settings) {
     const Vec3 axis = unit_direction(settings.axis, "vortex: the axis");
     const double strength = settings.circulation / (2.0 * std::numbers::pi);
     const double core_squared = settings.core_radius * settings.core_radius;
-    // Both profiles rotate about the axis with a rate that depends only on the square of the distance.
+    // In both profiles the angular velocity depends only on the squared distance from the axis.
     if (settings.profile == VortexProfile::rankine) {
         return steady_flow([point = settings.point, axis, strength, core_squared](const Vec3& position) {
             const Vec3 around = cross(axis, position - point);
@@ -211,7 +211,7 @@ FlowPointer make_scaled_flow(FlowPointer flow, double factor) {
 
 namespace {
 
-// Position between two samples along one axis.
+// Interpolation between two samples along one axis.
 struct Cell {
     std::size_t first = 0;
     std::size_t second = 0;
@@ -224,7 +224,7 @@ Cell cell_of(double x, double origin, double spacing, std::uint32_t count) {
     const double cell = (x - origin) / spacing;
     const double last = count - 1;
     const bool inside = cell >= 0.0 && cell <= last;
-    if (!(cell > 0.0)) return {0, 0, 0.0, inside};  // also for NaN
+    if (!(cell > 0.0)) return {0, 0, 0.0, inside};  // this test also catches NaN
     if (cell >= last) return {count - std::size_t{1}, count - std::size_t{1}, 0.0, inside};
     const double below = std::floor(cell);
     const auto first = static_cast<std::size_t>(below);
@@ -262,7 +262,7 @@ void check(const VectorGrid& grid) {
     detail::require_finite(grid.origin, "grid: the origin", "m");
     for (int axis = 0; axis < 3; ++axis) detail::require_positive(grid.spacing[axis], "grid: the spacing", "m");
     const auto& n = grid.counts;
-    // The test divides, because the product may overflow.
+    // The test uses a division, because the product of all counts may overflow.
     const bool fits = n[0] > 0 && n[1] > 0 && n[2] > 0 && grid.values.size() % n[0] == 0 &&
                       grid.values.size() / n[0] == std::uint64_t{n[1]} * n[2];
     if (!fits) {

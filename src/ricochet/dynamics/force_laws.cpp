@@ -61,7 +61,7 @@ std::unique_ptr<Force> make_point_gravity(std::vector<Attractor> attractors) {
 
 namespace {
 
-// Returns x^exponent for x > 0. Integer exponents, the usual ones, use multiplication.
+// Returns x^exponent for x > 0. Integer exponents are the common case and use multiplication.
 double power(double x, double exponent) {
     if (exponent != std::floor(exponent)) return portable_pow(x, exponent);
     const double base = exponent < 0.0 ? 1.0 / x : x;
@@ -223,7 +223,7 @@ public:
     [[nodiscard]] Vec3 acceleration(const ForceInput& input) const override {
         return gravity_ * (-input.temperature / ambient_);
     }
-    // The lift at a position changes with the temperature, so it stores no energy.
+    // The lift at a position changes with the particle's temperature, so the force has no potential.
     [[nodiscard]] std::optional<double> potential_energy(const ForceInput& /*input*/) const override {
         return std::nullopt;
     }
@@ -280,7 +280,7 @@ std::unique_ptr<Force> make_swirl(const Vec3& point, const Vec3& axis, double ac
     detail::require_finite(point, "swirl: the point on the axis", "m");
     detail::require_finite(acceleration, "swirl: the acceleration", "m/s^2");
     detail::require_positive(core_radius, "swirl: the core radius", "m");
-    // A Rankine vortex whose speed at the edge of its core equals the acceleration.
+    // The field is a Rankine vortex whose speed at the edge of its core equals the acceleration.
     const double circulation = 2.0 * std::numbers::pi * core_radius * acceleration;
     return make_field_force(
         make_vortex({point, detail::unit_direction(axis, "swirl: the axis"), circulation, core_radius}),
@@ -293,7 +293,7 @@ using detail::require_not_negative;
 using detail::require_positive;
 
 /// Physical constants of the drag of spheres.
-constexpr double kNewtonReynolds = 1000.0;  // the coefficient is constant from here on
+constexpr double kNewtonReynolds = 1000.0;  // Reynolds number from which the coefficient is constant
 constexpr double kNewtonCoefficient = 0.44;
 
 // Returns 0.15 Re^0.687, the relative excess of drag over Stokes's law.
@@ -301,8 +301,8 @@ double schiller_naumann_excess(double reynolds) { return 0.15 * portable_pow(rey
 
 class AnyDrag : public Force {};
 
-// Drag with a law that provides factor(speed, input) in kg/s: the force over the velocity relative to the medium. The
-// speed is computed only with kNeedsSpeed. The template avoids a virtual call per law.
+// Drag by a law that provides factor(speed, input) in kg/s: the drag force divided by the velocity relative to the
+// medium. The speed is computed only if the law sets kNeedsSpeed. The template avoids a virtual call of the law.
 template <class Law>
 class Drag final : public AnyDrag {
 public:
@@ -335,7 +335,7 @@ struct QuadraticLaw {
 
 struct SphereLaw {
     static constexpr bool kNeedsSpeed = true;
-    double per_area;  // half the density times the coefficient, times pi
+    double per_area;  // half the density times the drag coefficient times pi
     [[nodiscard]] double factor(double speed, const ForceInput& input) const {
         return per_area * (input.radius * input.radius) * speed;
     }

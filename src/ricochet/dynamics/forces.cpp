@@ -52,7 +52,7 @@ private:
     CallableTraits traits_;
 };
 
-// Force on selected particles. It is never uniform, because it differs between particles.
+// Force on selected particles. The force is never uniform, because it does not act on the other particles.
 class ForceOnSome final : public Force {
 public:
     ForceOnSome(std::vector<std::uint64_t> ids, std::unique_ptr<Force> force)
@@ -117,8 +117,8 @@ ForceInput whole(ForceInput input) {
     return input;
 }
 
-/// Returns true if a non-finite force is an error. Methods may try states that are out of range. These are handled when
-/// the particle reaches them.
+/// Returns true if a force in this state must be finite. Integrators may try states that are out of range. Such a state
+/// is an error only if the particle reaches it.
 bool is_in_range(const ForceInput& input) {
     return is_finite(input.position) && is_finite(input.velocity) && max_abs(input.position) <= kLargestJudged &&
            max_abs(input.velocity) <= kLargestJudged;
@@ -127,7 +127,7 @@ bool is_in_range(const ForceInput& input) {
 void refuse_if_not_finite(const std::vector<std::unique_ptr<Force>>& forces, const ForceInput& input) {
     for (std::size_t k = 0; k < forces.size() && is_in_range(input); ++k) {
         const std::optional<EnergyLaw> law = energy_law_of(*forces[k]);
-        if (law && law->varies) continue;  // a valid force can overflow, for example next to its centre
+        if (law && law->varies) continue;  // a valid force of this kind can overflow, for example next to its centre
         const Vec3 a = forces[k]->acceleration(input);
         if (is_finite(a)) continue;
         const Vec3& x = input.position;

@@ -1,6 +1,6 @@
 /// \file
-/// Forces as composable objects: the Force interface, sums of forces, user callables, and the force laws of scene
-/// files.
+/// Forces on single particles: the Force interface, sums of forces, forces from user callables, and the force laws of
+/// scene files.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace ricochet {
 
 class Coupling;
 
-/// State of one particle at one time, as seen by a force.
+/// State of one particle at one time: the input of a force.
 struct ForceInput {
     Vec3 position;  ///< m
     Vec3 velocity;  ///< m/s
@@ -25,13 +25,14 @@ struct ForceInput {
     double time;    ///< s
     /// Id of the particle, for forces that act on selected particles only.
     std::uint64_t id = 0;
-    /// Action of other particles on this one, from a bounce to the end of the step; null if the particle is not
+    /// Action of other particles on this particle, from a bounce to the end of the step. Null if the particle is not
     /// coupled.
     const Coupling* coupling = nullptr;
-    /// Radius of the whole sphere, in m, if only its core collides; `radius` is then the radius of the core. Otherwise
-    /// 0. ForceField passes the whole radius to the forces.
+    /// Radius of the whole sphere, in m, if only a smaller core of it collides. `radius` is then the radius of the
+    /// core. 0 if the whole sphere collides. ForceField passes the whole radius to the forces.
     double whole_radius = 0.0;
-    /// The particle's attribute `temperature`, in K, at the start of the step; 0 if the particle has no such attribute.
+    /// Value of the particle's attribute `temperature` at the start of the step, in K. 0 if the particle has no such
+    /// attribute.
     double temperature = 0.0;
 };
 
@@ -44,19 +45,19 @@ public:
     [[nodiscard]] virtual Vec3 acceleration(const ForceInput& input) const = 0;
     /// Returns true if the acceleration depends on position, velocity or time.
     [[nodiscard]] virtual bool varies() const = 0;
-    /// Returns true if the coupling already includes all forces, so that the forces are not added again.
+    /// Returns true if the coupling already includes all forces. The forces are then not added again.
     [[nodiscard]] virtual bool replaces_forces() const { return false; }
 };
 
-/// One force on particles. Implementations are pure: the same input gives the same bits from any thread. A non-finite
-/// acceleration ends the step with a RunError that names the force and the particle.
+/// One force on single particles. Implementations are pure: the same input gives the same bits in any thread. A
+/// non-finite acceleration ends the step with a RunError that names the force and the particle.
 class Force {
 public:
     virtual ~Force() = default;
     /// Returns the force divided by the mass, in m/s^2.
     [[nodiscard]] virtual Vec3 acceleration(const ForceInput& input) const = 0;
-    /// Returns the potential energy of the particle in this force, in J. Dissipative forces store no energy and return
-    /// 0; a force without a potential returns nothing.
+    /// Returns the potential energy of the particle by this force, in J. Dissipative forces store no energy and return
+    /// 0. Returns nothing if the force has no potential.
     [[nodiscard]] virtual std::optional<double> potential_energy(const ForceInput& input) const = 0;
     /// Returns true if the acceleration depends on neither position, velocity nor time.
     [[nodiscard]] virtual bool is_uniform() const { return false; }
@@ -64,7 +65,8 @@ public:
     [[nodiscard]] virtual std::optional<Vec3> common_acceleration() const { return std::nullopt; }
     /// Returns true if the acceleration does not depend on time. A particle at rest then stays at rest and may sleep.
     [[nodiscard]] virtual bool is_steady() const { return is_uniform(); }
-    /// Returns true if all its work comes out of its potential energy. Lasting contact then conserves the total energy.
+    /// Returns true if the force only converts its potential energy to work. Contact phases then conserve the total
+    /// energy.
     [[nodiscard]] virtual bool is_conservative() const { return false; }
     /// Returns true if the force reads ForceInput::temperature.
     [[nodiscard]] virtual bool needs_temperature() const { return false; }
@@ -73,12 +75,12 @@ public:
 /// Returns uniform gravity with the given acceleration, in m/s^2.
 [[nodiscard]] std::unique_ptr<Force> make_gravity(const Vec3& acceleration);
 
-/// Known properties of a callable force. The callables are pure, like the force itself.
+/// Known properties of a force from a callable. `potential` must be pure, like the force.
 struct CallableTraits {
-    std::function<double(const ForceInput&)> potential = {};  ///< in J; empty: no potential
+    std::function<double(const ForceInput&)> potential = {};  ///< potential energy, in J; empty: no potential
     bool is_uniform = false;       ///< the acceleration depends on neither position, velocity nor time
     bool is_steady = false;        ///< the acceleration does not depend on time
-    bool is_conservative = false;  ///< all work comes out of the potential; requires a potential
+    bool is_conservative = false;  ///< the force only converts its potential energy to work; requires a potential
 };
 /// Makes a force from a callable that returns newtons. The callable must be pure.
 [[nodiscard]] std::unique_ptr<Force> make_force(std::function<Vec3(const ForceInput&)> force,
@@ -94,30 +96,31 @@ struct CallableTraits {
 class ForceField {
 public:
     ForceField() = default;
-    /// Throws InputError for a null pointer. Pass adds_coupling = false if the forces themselves account for
+    /// Throws InputError for a null pointer. adds_coupling: false if the forces themselves include
     /// ForceInput::coupling.
     explicit ForceField(std::vector<std::unique_ptr<Force>> forces, bool adds_coupling = true);
     [[nodiscard]] Vec3 acceleration(const ForceInput& input) const;
-    /// Returns the sum of the potentials, in J; nothing if one force has no potential.
+    /// Returns the sum of the potentials, in J; nothing if any force has no potential.
     [[nodiscard]] std::optional<double> potential_energy(const ForceInput& input) const;
     [[nodiscard]] bool empty() const { return forces_.empty(); }
     /// Returns true if the acceleration depends on neither position, velocity nor time.
     [[nodiscard]] bool is_uniform() const { return uniform_; }
-    /// Returns true if the acceleration of one particle is uniform when its coupling is included.
+    /// Returns true if the acceleration of this particle, including its coupling, depends on neither position, velocity
+    /// nor time.
     [[nodiscard]] bool is_uniform_for(const ForceInput& input) const {
         if (input.coupling == nullptr) return uniform_;
         return !input.coupling->varies() && (uniform_ || input.coupling->replaces_forces());
     }
     /// Returns the acceleration, in m/s^2, if it is the same for all particles at all positions and times. For
-    /// uncoupled particles it has the same bits as acceleration().
+    /// uncoupled particles the value has the same bits as acceleration().
     [[nodiscard]] const std::optional<Vec3>& common_acceleration() const { return common_; }
     /// Returns true if no force depends on time.
     [[nodiscard]] bool is_steady() const { return steady_; }
-    /// Returns true if all work on one particle, its coupling included, comes out of its potential energy.
+    /// Returns true if all work on this particle is converted potential energy. A coupled particle returns false.
     [[nodiscard]] bool is_conservative_for(const ForceInput& input) const {
         return conservative_ && input.coupling == nullptr;
     }
-    /// Returns true if one force reads the particles' temperature.
+    /// Returns true if any force reads the particles' temperature.
     [[nodiscard]] bool needs_temperature() const { return needs_temperature_; }
 
 private:
@@ -130,9 +133,8 @@ private:
     std::optional<Vec3> common_ = Vec3{};
 };
 
-// Drag: the resistance of a medium to a particle that moves through it. The laws differ in the dependence of the force
-// on the velocity w relative to the medium. Each law takes an optional flow; without one the medium is at rest. Drags
-// store no energy.
+// Drag: the resistance of a medium to a particle that moves through it. w is the particle's velocity relative to the
+// medium. Each law takes the flow of the medium. If the flow is null, the medium is at rest. Drags store no energy.
 
 /// Returns F = -coefficient w; coefficient in kg/s, >= 0.
 [[nodiscard]] std::unique_ptr<Force> make_linear_drag(double coefficient, FlowPointer flow = nullptr);
@@ -140,25 +142,26 @@ private:
 /// Returns F = -coefficient |w| w; coefficient in kg/m, >= 0. It acts on particles of any radius, points included.
 [[nodiscard]] std::unique_ptr<Force> make_quadratic_drag(double coefficient, FlowPointer flow = nullptr);
 
-/// Returns F = -1/2 fluid_density drag_coefficient pi radius^2 |w| w with the particle's own radius; zero for points.
-/// drag_coefficient: a pure number >= 0 (0.47 for a ball at medium speeds); fluid_density in kg/m^3, >= 0.
+/// Returns F = -1/2 fluid_density drag_coefficient pi radius^2 |w| w with the radius of the particle. The force is zero
+/// for points. drag_coefficient: dimensionless, >= 0 (0.47 for a ball at medium speeds). fluid_density in kg/m^3, >= 0.
 /// Source: G. K. Batchelor, "An Introduction to Fluid Dynamics", Cambridge 1967, section 5.11.
 [[nodiscard]] std::unique_ptr<Force> make_sphere_drag(double drag_coefficient, double fluid_density,
                                                       FlowPointer flow = nullptr);
 
-/// Returns Stokes's law F = -6 pi viscosity radius w for slow spheres (Reynolds numbers below about 0.1); zero for
-/// points. viscosity: dynamic, in Pa s, >= 0. Source: G. G. Stokes, Trans. Cambridge Phil. Soc. 9, 1851.
+/// Returns Stokes's law F = -6 pi viscosity radius w for slow spheres (Reynolds numbers below about 0.1). The force is
+/// zero for points. viscosity: dynamic viscosity, in Pa s, >= 0. Source: G. G. Stokes, Trans. Cambridge Phil. Soc. 9,
+/// 1851.
 [[nodiscard]] std::unique_ptr<Force> make_stokes_drag(double viscosity, FlowPointer flow = nullptr);
 
-/// Returns the drag of spheres at any speed below about Re = 2e5: F = -1/2 fluid_density C_d pi radius^2 |w| w. C_d is
-/// schiller_naumann_coefficient(). Points feel no drag. fluid_density in kg/m^3, >= 0; viscosity: dynamic, in Pa s, >
-/// 0.
+/// Returns the drag of spheres for Reynolds numbers below about 2e5: F = -1/2 fluid_density C_d pi radius^2 |w| w. C_d
+/// is schiller_naumann_coefficient(). The force is zero for points. fluid_density in kg/m^3, >= 0. viscosity: dynamic
+/// viscosity, in Pa s, > 0.
 [[nodiscard]] std::unique_ptr<Force> make_schiller_naumann_drag(double fluid_density, double viscosity,
                                                                 FlowPointer flow = nullptr);
 
-/// Returns the drag coefficient of a sphere at a Reynolds number > 0: 24 / Re (1 + 0.15 Re^0.687) below 1000, 0.44
-/// above. Source: L. Schiller, A. Naumann, Z. Ver. Dt. Ing. 77, 1933, as given in R. Clift, J. R. Grace, M. E. Weber,
-/// "Bubbles, Drops, and Particles", Academic Press 1978, chapter 5.
+/// Returns the drag coefficient of a sphere at a Reynolds number Re > 0: 24 / Re (1 + 0.15 Re^0.687) if Re < 1000,
+/// otherwise 0.44. Source: L. Schiller, A. Naumann, Z. Ver. Dt. Ing. 77, 1933, as given in R. Clift, J. R. Grace, M. E.
+/// Weber, "Bubbles, Drops, and Particles", Academic Press 1978, chapter 5.
 [[nodiscard]] double schiller_naumann_coefficient(double reynolds);
 
 // Gravity of point masses.
@@ -166,26 +169,26 @@ private:
 /// One attracting mass at a fixed position.
 struct Attractor {
     Vec3 position;           ///< in m
-    double strength = 0.0;   ///< G M, in m^3/s^2; negative repels
-    double softening = 0.0;  ///< in m, >= 0: the mass is spread over about this length
+    double strength = 0.0;   ///< G M, in m^3/s^2; negative values repel
+    double softening = 0.0;  ///< softening length, in m, >= 0; the mass is spread over about this length
 };
 
-/// Returns the sum, in the given order, of a = -strength d / (|d|^2 + softening^2)^(3/2), with d from the attractor to
-/// the particle. At the position of an attractor without softening the law is undefined, and the pull is zero.
-/// Source: H. C. Plummer, MNRAS 71, 1911.
+/// Returns the sum of the attractors' accelerations a = -strength d / (|d|^2 + softening^2)^(3/2), in the given order.
+/// d points from the attractor to the particle. At the position of an attractor without softening the law is undefined.
+/// The acceleration by this attractor is then zero. Source: H. C. Plummer, MNRAS 71, 1911.
 [[nodiscard]] std::unique_ptr<Force> make_point_gravity(std::vector<Attractor> attractors);
 
-// A central force that is a power of the distance.
+// A central force proportional to a power of the distance.
 
-/// F = -strength (s / reference)^(exponent - 1) d / reference, with d from the centre and s^2 = |d|^2 + softening^2.
-/// Without softening its magnitude is strength (|d| / reference)^exponent. Exponent 1 is a spring, 0 a constant pull,
-/// and -2 the law of Coulomb and Newton.
+/// Settings of the force F = -strength (s / reference)^(exponent - 1) d / reference. d points from the centre to the
+/// particle, and s^2 = |d|^2 + softening^2. Without softening the magnitude is strength (|d| / reference)^exponent. The
+/// exponent 1 gives a spring, 0 a constant attraction, and -2 the law of Coulomb and Newton.
 ///
-/// The potential is a power of s, or a logarithm for exponent -1. It is zero at the centre for exponents above -1, at s
-/// = reference for -1, and at infinity for exponents below -1. At the centre itself the force is zero.
+/// The potential is a power of s, or a logarithm if the exponent is -1. It is zero at the centre for exponents above
+/// -1, at s = reference for -1, and at infinity for exponents below -1. The force is zero at the centre.
 struct RadialForceSettings {
     Vec3 center;             ///< in m
-    double strength = 0.0;   ///< in N at the reference distance; negative repels
+    double strength = 0.0;   ///< force at the reference distance, in N; negative values repel
     double exponent = -2.0;  ///< -12 to 12
     double softening = 0.0;  ///< in m, >= 0
     double reference = 1.0;  ///< in m, > 0
@@ -197,58 +200,60 @@ inline constexpr double kLargestRadialExponent = 12.0;
 
 // Springs from particles to fixed points.
 
-/// F = -stiffness (|d| - rest_length) d / |d| - damping (v . d) d / |d|^2, with d from the anchor to the particle. The
-/// damper acts only along the spring. At the anchor itself the spring has no direction, so the force is zero. The
-/// potential is stiffness / 2 (|d| - rest_length)^2; damping stores no energy.
+/// Settings of the force F = -stiffness (|d| - rest_length) d / |d| - damping (v . d) d / |d|^2. d points from the
+/// anchor to the particle. The damper acts only along the spring. If the particle is at the anchor, the spring has no
+/// direction, so the force is zero. The potential is stiffness / 2 (|d| - rest_length)^2. Damping stores no energy.
 struct AnchorSettings {
     Vec3 position;                           ///< in m
     double stiffness = 0.0;                  ///< in N/m, >= 0
     double rest_length = 0.0;                ///< in m, >= 0
     double damping = 0.0;                    ///< in kg/s, >= 0
-    std::vector<std::uint64_t> particles{};  ///< ids of the attached particles; empty: all
+    std::vector<std::uint64_t> particles{};  ///< ids of the attached particles; if empty, all particles are attached
 };
 [[nodiscard]] std::unique_ptr<Force> make_anchor(AnchorSettings settings);
 
 // Charged particles in uniform electric and magnetic fields.
 
-/// Lorentz force F = q (E + v x B) on particles that all carry the same charge q. The magnetic part does no work. The
-/// potential is -q E . x, zero at the world's origin. Source: J. D. Jackson, "Classical Electrodynamics", 3rd ed.,
-/// section 12.2 (slow particles).
+/// Settings of the Lorentz force F = q (E + v x B) on particles that all have the same charge q. The magnetic part does
+/// no work. The potential is -q E . x. It is zero at the world's origin. Source: J. D. Jackson, "Classical
+/// Electrodynamics", 3rd ed., section 12.2 (slow particles).
 struct LorentzSettings {
-    double charge = 0.0;  ///< in C, of every particle
-    Vec3 electric;        ///< in V/m
-    Vec3 magnetic;        ///< in T
+    double charge = 0.0;  ///< charge of every particle, in C
+    Vec3 electric;        ///< electric field, in V/m
+    Vec3 magnetic;        ///< magnetic field, in T
 };
 [[nodiscard]] std::unique_ptr<Force> make_lorentz_force(const LorentzSettings& settings);
 
 // Buoyancy of particles in a fluid at rest under gravity.
 
-/// Returns Archimedes's force F = -fluid_density (4/3) pi radius^3 gravity with the particle's own radius; zero for
-/// points. The weight of the particle is a separate force (make_gravity). fluid_density in kg/m^3, >= 0; gravity in
-/// m/s^2.
+/// Returns Archimedes's force F = -fluid_density (4/3) pi radius^3 gravity with the radius of the particle. The force
+/// is zero for points. The weight of the particle is a separate force (make_gravity). fluid_density in kg/m^3, >= 0;
+/// gravity in m/s^2.
 [[nodiscard]] std::unique_ptr<Force> make_buoyancy(double fluid_density, const Vec3& gravity);
 
-/// Returns the buoyancy of gas parcels that are hotter or colder than the ambient gas. The ambient gas is at rest and
-/// has the same kind and pressure: a = -gravity T / ambient_temperature. The weight of the parcel is a separate force
-/// (make_gravity); the sum of both is gravity (1 - T / ambient_temperature). Particles of temperature 0 feel no
-/// buoyancy: they are bodies far denser than the gas. gravity in m/s^2; ambient_temperature in K, > 0.
-/// Source: J. S. Turner, "Buoyancy Effects in Fluids", Cambridge 1973, section 1.2, with the density of an ideal gas.
+/// Returns the buoyancy of gas parcels that are hotter or colder than the ambient gas: a = -gravity T /
+/// ambient_temperature. The ambient gas is at rest. Both gases are of the same kind and have the same pressure. The
+/// weight of the parcel is a separate force (make_gravity). The sum of buoyancy and weight is gravity (1 - T /
+/// ambient_temperature). Particles with the temperature 0 stand for bodies that are far denser than the gas. Buoyancy
+/// does not act on them. gravity in m/s^2; ambient_temperature in K, > 0. Source: J. S. Turner, "Buoyancy Effects in
+/// Fluids", Cambridge 1973, section 1.2, with the density of an ideal gas.
 [[nodiscard]] std::unique_ptr<Force> make_thermal_buoyancy(double ambient_temperature, const Vec3& gravity);
 
 // Vector fields used directly as forces.
 
 /// Meaning of the vectors of a field.
 enum class FieldMeaning {
-    acceleration,  ///< in m/s^2, the same for every mass
+    acceleration,  ///< acceleration in m/s^2, the same for every mass
     force,         ///< in N
 };
 
 /// Makes a force from a flow whose vectors are accelerations or forces. The force has no potential.
 [[nodiscard]] std::unique_ptr<Force> make_field_force(FlowPointer field, FieldMeaning meaning);
 
-/// Returns a force around an axis, by the right-hand rule. The tangential acceleration is `acceleration` (m/s^2) at the
-/// distance core_radius (m, > 0). It grows linearly from the axis to that distance and falls as 1 / distance outside.
-/// axis: any nonzero length. The force has no potential: a particle that circles the axis gains energy.
+/// Returns a force that acts tangentially around an axis, by the right-hand rule. The tangential acceleration is
+/// `acceleration` (m/s^2) at the distance core_radius (m, > 0). It increases linearly from the axis to that distance,
+/// and falls as 1 / distance outside. axis: any nonzero length. The force has no potential, because a particle that
+/// circles the axis gains energy.
 [[nodiscard]] std::unique_ptr<Force> make_swirl(const Vec3& point, const Vec3& axis, double acceleration,
                                                 double core_radius);
 

@@ -13,16 +13,17 @@ namespace {
 /// Stefan-Boltzmann constant, in W/(m^2 K^4) (exact by the SI of 2019).
 constexpr double kStefanBoltzmann = 5.670374419e-8;
 
-/// Start temperatures above ambient are clamped to this multiple of (3 b t)^(-1/3). Even the hottest body is less than
-/// (3 b t)^(-1/3) above the ambient temperature after a time t, so the clamp does not change the result in any digit.
-/// Local: far beyond the last digit.
+/// Upper limit of the start difference to the ambient temperature, as a multiple of (3 b t)^(-1/3). After a time t,
+/// even an arbitrarily hot body is less than (3 b t)^(-1/3) above the ambient temperature. Clamping the start
+/// difference to this limit therefore does not change any digit of the result. Local: a limit whose effect is far below
+/// the last digit.
 constexpr double kForgotten = 1e6;
 
-/// e^-x is 0 beyond this value. Local: a guard against the end of the range of doubles.
+/// e^-x is 0 in double precision for x above this value. Local: a limit from the range of doubles.
 constexpr double kGone = 750.0;
 
-/// Decay of d = T - Ta: d' = -g d with g = a + b (T^2 + Ta^2) (T + Ta). The logarithm w = log(d(0) / d) grows by g,
-/// which is smooth and never negative. A long step is therefore never unstable, only inaccurate.
+/// Decay of the difference d = T - Ta: d' = -g d with g = a + b (T^2 + Ta^2) (T + Ta). The integrated variable is w =
+/// log(d(0) / d), with w' = g. g is smooth and never negative. A long step is therefore inaccurate, but never unstable.
 class Decay {
 public:
     Decay(double difference, double ambient, const CoolingRates& rates)
@@ -37,7 +38,7 @@ public:
             h = std::min(h, duration - done);
             const double once = step(w, h);
             const double twice = step(step(w, 0.5 * h), 0.5 * h);
-            const double error = std::fabs(twice - once) / 15.0;  // of a method of fourth order
+            const double error = std::fabs(twice - once) / 15.0;  // Richardson's estimate for a method of fourth order
             const double most = kCoolingError * (1.0 + twice);
             if (error <= most) {
                 w = twice + (twice - once) / 15.0;
@@ -55,7 +56,7 @@ public:
     }
 
 private:
-    /// The classical Runge-Kutta method.
+    /// Returns w after a step of length h with the classical Runge-Kutta method.
     [[nodiscard]] double step(double w, double h) const {
         const double k1 = rate(w);
         const double k2 = rate(w + 0.5 * h * k1);
@@ -69,7 +70,8 @@ private:
     CoolingRates rates_;
 };
 
-/// Returns the ambient temperature plus the remaining difference, clamped against rounding.
+/// Returns the ambient temperature plus the remaining difference. The result is clamped to the range from `start` to
+/// `ambient`, because rounding could exceed it.
 double between(double start, double ambient, double left) {
     return std::clamp(ambient + left, std::min(start, ambient), std::max(start, ambient));
 }
@@ -104,7 +106,7 @@ double cooled(double temperature, double ambient, const CoolingRates& rates, dou
     }
     const Decay decay(difference, ambient, rates);
     const double slowest = std::min(decay.rate(0.0), decay.rate(kGone));
-    // Nothing would be left, and the sums of rates of very light bodies could overflow.
+    // In these cases the remaining difference is 0. The rates of very light bodies could overflow in the integration.
     if (!std::isfinite(decay.rate(0.0)) || slowest * duration >= kGone) return ambient;
     return between(temperature, ambient, difference * portable_exp(-decay.after(duration)));
 }

@@ -9,9 +9,9 @@ namespace ricochet {
 
 namespace {
 
-/// Steps of finite differences, relative to the speed and to the coordinates per step. The first is the square root of
-/// a double's rounding. The second keeps a step visible next to large coordinates. Local: steps of numerical
-/// derivatives, which change only the convergence.
+/// Relative increments for finite differences of the velocity. kSpeedStep is relative to the speed and is the square
+/// root of the rounding of doubles. kPlaceStep is relative to the coordinates divided by the time step. With it, the
+/// increment still changes large coordinates. Local: the increments affect only the speed of convergence.
 constexpr double kSpeedStep = 0x1p-26;
 constexpr double kPlaceStep = 0x1p-38;
 
@@ -23,7 +23,8 @@ ForceInput at_end(const ForceInput& state, const Vec3& v1, double h) {
     return end;
 }
 
-/// Returns the solution of the system with these columns (Cramer's rule); the right side itself if it is singular.
+/// Returns the solution of the linear system with these columns, by Cramer's rule. Returns the right-hand side if the
+/// system is singular.
 Vec3 solved(const Columns3& m, const Vec3& right) {
     const double determinant = dot(m[0], cross(m[1], m[2]));
     if (determinant == 0.0 || !std::isfinite(determinant)) return right;

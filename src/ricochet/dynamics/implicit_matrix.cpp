@@ -58,9 +58,10 @@ private:
         return !state_.supports.empty() && state_.supports[i].count > 0;
     }
 
-    /// Returns the mass plus the contribution of the forces on one particle. If the matrix must be symmetric, only the
-    /// symmetric part of that contribution is used. A pinned member has the rows of the unit matrix. In directions with
-    /// a given velocity the matrix is the mass, because the residual is zero there.
+    /// Returns the diagonal block of a member without springs: the mass plus the contribution of the forces on single
+    /// particles. If the matrix must be symmetric, only the symmetric part of this contribution is used. The block of a
+    /// pinned member is the unit matrix. Along constrained directions the block is the mass, because the residual is
+    /// zero there.
     [[nodiscard]] Block3 own_block(std::size_t i) const {
         Block3 block{};
         const bool is_pinned = state_.system.is_pinned(i);
@@ -92,8 +93,8 @@ private:
         return block;
     }
 
-    /// Adds friction across the constraints: against any change of a slow slip, otherwise against a change of its
-    /// direction.
+    /// Adds the derivative of friction in the unconstrained directions. If the slip is slow, friction opposes any
+    /// change of it. Otherwise friction has constant magnitude, so only a change of the slip's direction changes it.
     void add_friction(Block3& block, std::size_t i) const {
         const SupportConstraints& supports = state_.supports[i];
         const Vec3 slip = supports.slip_of(state_.v1[i]);
@@ -109,7 +110,8 @@ private:
         }
     }
 
-    /// Adds a spring's block to its ends and between them. On entry, `between` contains the spring's block itself.
+    /// Adds a spring's block to the diagonal blocks of its ends, and replaces the entry in `between` by the
+    /// off-diagonal block. On entry, this entry is the spring's block.
     void add_bond(BlockMatrix& matrix, std::size_t k) const {
         const ParticleSystem::Bond& bond = state_.system.bonds()[k];
         Block3& between = matrix.between[k];
@@ -123,8 +125,8 @@ private:
         }
     }
 
-    /// Returns h^2 times a spring's stiffness along and across, plus h times that of its damper; zero if its ends
-    /// coincide.
+    /// Returns the block of a spring: h^2 times the stiffness of the spring plus h times the stiffness of its damper,
+    /// along and across the spring. The block is zero if the ends coincide.
     [[nodiscard]] Block3 spring_block(const ParticleSystem::Bond& bond) const {
         const Spring& spring = state_.system.spring_of(bond);
         const Vec3 apart = state_.x1[bond.first] - state_.x1[bond.second];
@@ -148,7 +150,8 @@ private:
         return block;
     }
 
-    /// Returns a block projected across the constraints of its rows' member and of its columns' member.
+    /// Returns a block projected onto the unconstrained directions: the rows for member `of_rows`, the columns for
+    /// member `of_columns`.
     [[nodiscard]] Block3 across(const Block3& block, std::size_t of_rows, std::size_t of_columns) const {
         if (!is_supported(of_rows) && !is_supported(of_columns)) return block;
         const SupportConstraints& row = state_.supports[of_rows];

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the integrators: the matrices of Newton's method for the backward Euler step of a system.
+/// Matrices of Newton's method for the backward Euler step of a system. Private to the integrators.
 #pragma once
 
 #include <Eigen/Sparse>
@@ -12,32 +12,33 @@
 
 namespace ricochet {
 
-/// Selection of the terms of the derivative in a matrix.
+/// Terms of the derivative that a matrix contains.
 struct MatrixKind {
-    /// Fraction of the transverse stiffness of compressed springs, from 0 (the matrix is definite) to 1 (exact).
+    /// Fraction of the negative transverse stiffness of compressed springs in the matrix. With 0 the matrix is positive
+    /// definite, with 1 it is exact.
     double pressure = 1.0;
-    bool is_symmetric = false;  ///< use only the symmetric part of forces on single members
+    bool is_symmetric = false;  ///< true: only the symmetric part of the derivative of forces on single members is used
 };
 
-/// State at the end of a backward Euler step of `duration` seconds. All references must outlive it.
+/// State at the end of a backward Euler step of `duration` seconds. All referenced objects must outlive it.
 struct ImplicitState {
     const ParticleSystem& system;
     double duration;                               ///< in s
-    std::span<const SupportConstraints> supports;  ///< by member; empty: no surface constraints
-    const std::vector<Vec3>& x1;                   ///< in m
-    const std::vector<Vec3>& v1;                   ///< in m/s
+    std::span<const SupportConstraints> supports;  ///< constraints of each member; empty: no member is constrained
+    const std::vector<Vec3>& x1;                   ///< end positions, in m
+    const std::vector<Vec3>& v1;                   ///< end velocities, in m/s
 };
 
-/// Returns the negative derivative of the equations' residuals with respect to the end velocities, in kg: a row of
-/// blocks per member and a pair per bond. The diagonal blocks are not symmetric if the exact matrix is requested and
-/// the forces on single members have no symmetric derivative. All their entries then count.
+/// Returns the negative derivative of the residuals with respect to the end velocities, in kg. The matrix has one row
+/// of blocks per member and one pair per bond. In the exact matrix, diagonal blocks are not symmetric if forces on
+/// single members have no symmetric derivative. All entries of diagonal blocks are then used.
 [[nodiscard]] BlockMatrix implicit_matrix(const ImplicitState& state, const MatrixKind& kind);
 
-/// Returns the product of such a matrix with a vector of three numbers per member.
+/// Returns the product of a matrix from implicit_matrix() with a vector of three numbers per member.
 [[nodiscard]] Eigen::VectorXd product(const BlockMatrix& matrix, const ParticleSystem& system,
                                       const Eigen::VectorXd& vector);
 
-/// Returns the same matrix in sparse form.
+/// Returns a matrix from implicit_matrix() in Eigen's sparse form.
 [[nodiscard]] Eigen::SparseMatrix<double> sparse(const BlockMatrix& matrix, const ParticleSystem& system);
 
 }  // namespace ricochet

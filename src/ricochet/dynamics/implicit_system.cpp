@@ -1,4 +1,4 @@
-// The backward Euler step of a whole system: Newton's method with descent in energy.
+// The backward Euler step of a whole system: Newton's method in which every iteration reduces an energy.
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
@@ -18,43 +18,45 @@ using Vector = Eigen::VectorXd;
 /// Members per unit of parallel work.
 constexpr std::size_t kBlock = 256;
 
-/// Largest number of halvings of a correction that is too long. Local: a limit of this search, whose result is checked.
+/// Largest number of halvings of a correction that does not reduce the energy. Local: a limit of this search. Its
+/// result is checked.
 constexpr int kMostCuts = 12;
 
-/// Largest number of Newton steps before the last iterate is used. Local: a limit of this search, whose result is
-/// checked.
+/// Largest number of Newton iterations. After that the last iterate is used. Local: a limit of this search. Its result
+/// is checked.
 constexpr int kMostSteps = 80;
 
-/// Smallest fraction of the pressure in springs that is tried before 0. Local: a step of this search.
+/// Smallest value of MatrixKind::pressure that is tried before 0. Local: a step of this search.
 constexpr double kLeastPressure = 0.2;
 
-/// Correction, relative to the largest speed, below which Newton's method on the equations converges. Local, because
-/// kNewtonTolerance decides when the equations are solved.
+/// Correction, relative to the largest speed, below which Newton's method is expected to converge without a decrease of
+/// the energy. Local, because kNewtonTolerance decides when the equations are solved.
 constexpr double kNear = 1e-4;
 
-/// Smallest energy decrease of a correction, as a fraction of that predicted by the slope (L. Armijo, 1966). Local: a
-/// rule of this search, see kNewtonTolerance.
+/// Smallest accepted energy decrease of a correction, as a fraction of the decrease predicted from the slope (L.
+/// Armijo, 1966). Local: a rule of this search, see kNewtonTolerance.
 constexpr double kLeastDescent = 1e-4;
 
-/// Rounding of a sum of energies, relative to the sum. Local: an error bound of this arithmetic.
+/// Rounding of a sum of energies, relative to the sum. Local: an error bound of the sum in this file.
 constexpr double kEnergyRounding = 1e-13;
 
-/// Iterative refinement of a symmetric matrix's correction towards the exact one, with one factorization: the largest
-/// number of solutions, the final residual relative to the first, and the reduction that each solution must achieve.
-/// Local, because kNewtonTolerance decides when the equations are solved.
+/// Iterative refinement of a correction towards that of the exact matrix, with the factorized symmetric matrix. The
+/// values are the largest number of iterations, the final residual relative to the first, and the factor by which each
+/// iteration must reduce the residual. Local, because kNewtonTolerance decides when the equations are solved.
 constexpr int kMostRefinements = 20;
 constexpr double kRefined = 1e-3;
 constexpr double kRefinesBy = 0.7;
 
-/// Rounding of a stretch, relative to the coordinates of its ends, including that of a few sums. Local: an error bound
-/// of this arithmetic.
+/// Rounding of a spring's stretch, relative to the coordinates of its ends. It includes the rounding of a few sums.
+/// Local: an error bound of the sums in this file.
 constexpr double kPositionRounding = 0x1p-49;
 
-/// The equations m (v1 - v0) - h F(x0 + h v1, v1, t + h) = 0 of all members, and their solution. Dampers resist the
-/// mean rate of the length over the step.
+/// The equations m (v1 - v0) - h F(x0 + h v1, v1, t + h) = 0 of all members, and their solution. The force of a damper
+/// is proportional to the mean rate of change of its length over the step.
 class BackwardEuler {
 public:
-    /// guess: first iterate of the velocities. If empty, the velocities at the start of the step are used.
+    /// guess: first iterate of the velocities. If it is empty, the velocities at the start of the step are the first
+    /// iterate.
     BackwardEuler(const ParticleSystem& system, double h, std::span<const SupportConstraints> supports,
                   std::span<const Vec3> guess, const ImplicitOptions& options)
         : system_(system),
@@ -100,10 +102,10 @@ private:
 
     [[nodiscard]] bool is_supported(std::size_t i) const { return !supports_.empty() && supports_[i].count > 0; }
 
-    /// Solves the equations by Newton's method. The residual is the gradient of an energy. It is the sum of the kinetic
-    /// energy relative to the motion without springs, the spring energy, the dissipation, and the work of forces. With
-    /// definite matrices every step descends, so the method reaches the minimum from any start and does not end at a
-    /// saddle. Returns true if the method converged.
+    /// Solves the equations by Newton's method. The residual is the gradient of an energy. This energy is the sum of
+    /// the kinetic energy relative to the motion without springs, the spring energy, the dissipation, and the work of
+    /// forces. The matrices are positive definite, so every iteration reduces the energy. The method therefore reaches
+    /// a minimum from any start, and does not end at a saddle. Returns true if the method converged.
     bool solve() {
         for (int iteration = 0; iteration < kMostSteps; ++iteration) {
             if (is_solved()) return true;
@@ -117,7 +119,8 @@ private:
         return false;
     }
 
-    /// Factorizes the matrix with as much of the pressure in springs as leaves it definite. The next matrix tries more.
+    /// Factorizes the matrix with the largest tried fraction of the transverse stiffness of compressed springs that
+    /// leaves the matrix positive definite. The next call starts with a larger fraction.
     bool factorize_definite() {
         for (;;) {
             if (solver_.factorize(matrix({pressure_, true}))) break;
@@ -128,7 +131,8 @@ private:
         return true;
     }
 
-    /// Solves with the exact matrix. It refines with the factorized symmetric matrix if that is close enough.
+    /// Returns the solution with the exact matrix. The function refines iteratively with the factorized symmetric
+    /// matrix. If this does not converge, it solves the exact matrix directly.
     Vector exact_correction() const {
         const BlockMatrix exact = matrix({1.0, false});
         Vector correction = solved(right_);
@@ -150,7 +154,7 @@ private:
         return solver.solve(right_);
     }
 
-    /// Solves with the factorized matrix.
+    /// Returns the solution with the factorized matrix.
     [[nodiscard]] Vector solved(Vector right) const {
         solver_.solve({right.data(), static_cast<std::size_t>(right.size())});
         return right;
@@ -163,8 +167,9 @@ private:
         }
     }
 
-    /// Moves along the correction while the energy falls. Near the solution, where energies differ by rounding, the
-    /// residual must fall instead. Returns false if neither falls.
+    /// Applies the correction, and halves it until the energy decreases enough. Near the solution a decrease of the
+    /// residual is also accepted, because energies differ only by rounding there. Returns false if no tried length
+    /// decreases either.
     bool follow(const Vector& correction, bool is_near) {
         const std::vector<Vec3> v_before = v1_;
         const std::vector<Vec3> own_before = own_;
@@ -239,7 +244,8 @@ private:
         forces_[bond.second] -= pull;
     }
 
-    /// Returns true if the residual is within the rounding of the positions, which stiff springs magnify.
+    /// Returns true if the residual is below the rounding error of the spring forces. It follows from the rounding of
+    /// the positions and the spring stiffness.
     [[nodiscard]] bool is_solved() const {
         if (right_.size() == 0) return true;
         double stiffest = 0.0;  // in N
@@ -268,15 +274,15 @@ private:
     double h_;
     std::span<const SupportConstraints> supports_;
     const ImplicitOptions& options_;
-    std::vector<double> lengths_;  // of the springs at the start, by bond, in m
+    std::vector<double> lengths_;  // length of each bond's spring at the start, in m
     std::vector<Vec3> v1_;
     std::vector<Vec3> x1_;
-    std::vector<Vec3> own_;     // of forces on single members, in N
-    std::vector<Vec3> forces_;  // all forces, in N
+    std::vector<Vec3> own_;     // forces on single members, in N
+    std::vector<Vec3> forces_;  // sums of all forces, in N
     BlockCholesky solver_;
     Vector right_;
-    double energy_ = 0.0;    // in J
-    double pressure_ = 1.0;  // fraction of the pressure in the next matrix
+    double energy_ = 0.0;    // energy of the current iterate, in J
+    double pressure_ = 1.0;  // MatrixKind::pressure of the next matrix
 
     bool is_symmetric_;  // true if the exact matrix is symmetric
 };

@@ -91,9 +91,9 @@ Flight verlet_flight(const ForceField& forces, const ForceInput& state, double h
     return {parabola_path(state.position, state.velocity, a, h), a, 0.0, state, end_velocity, 0.0, true};
 }
 
-/// Tries the step `before.next_duration`, then half of it, until the errors are small enough. It halves instead of
-/// using a formula of the error. Powers of the error would differ between systems in their last bits, and so would the
-/// result.
+/// Tries a substep of `before.next_duration` seconds, and halves it until the errors are within the tolerance. The
+/// usual formula for the next substep uses powers of the error. Their last bits differ between systems, so the result
+/// would also differ.
 Flight adaptive_flight(const Integrator& integrator, const ForceField& forces, const ForceInput& state, double duration,
                        const Flight& before) {
     const double first = before.next_duration;
@@ -106,7 +106,7 @@ Flight adaptive_flight(const Integrator& integrator, const ForceField& forces, c
         if (error <= 1.0 || 0.5 * h < before.shortest) break;
     }
     double next = error < kErrorToDouble ? 2.0 * h : h;
-    if (h >= duration) next = first;  // the step ended here, not the method
+    if (h >= duration) next = first;  // the duration limited the step, not the error
     const Path path = hermite_path(state.position, state.velocity, step.end.position, step.end.velocity, h);
     Flight flight{path, step.acceleration, 0.0, state, step.end.velocity, next, path.degree >= 3};
     flight.shortest = before.shortest;
@@ -115,7 +115,7 @@ Flight adaptive_flight(const Integrator& integrator, const ForceField& forces, c
     return flight;
 }
 
-/// Returns the first adaptive flight of a step.
+/// Returns the first flight of a step by the adaptive method.
 Flight first_adaptive_flight(const Integrator& integrator, const ForceField& forces, const ForceInput& state,
                              double duration) {
     Flight before;
@@ -166,13 +166,13 @@ Flight begin_flight(const Integrator& integrator, const ForceField& forces, cons
         case IntegratorKind::velocity_verlet:
             if (!forces.is_uniform_for(state)) return verlet_flight(forces, state, duration);
             break;
-        case IntegratorKind::ballistic:  // its path would hold a coupling constant that varies
+        case IntegratorKind::ballistic:  // a path of constant acceleration would ignore changes of the coupling
             if (state.coupling != nullptr && state.coupling->varies()) return verlet_flight(forces, state, duration);
             break;
         case IntegratorKind::midpoint:
         case IntegratorKind::rk4:
             if (!forces.is_uniform_for(state)) return one_step_flight(integrator.kind, forces, state, duration);
-            break;  // the exact flow is a parabola, and all these methods reproduce it
+            break;  // the exact path is a parabola, which these methods reproduce
         case IntegratorKind::dormand_prince:
             if (!forces.is_uniform_for(state)) return first_adaptive_flight(integrator, forces, state, duration);
             break;
@@ -192,8 +192,8 @@ Flight resume_flight(const Integrator& integrator, const ForceField& forces, con
     return begin_flight(integrator, forces, state, duration);
 }
 
-// Kicking first is equivalent to the parabola with an extra half kick at its start. Kicking last is equivalent to the
-// parabola with half a kick less.
+// Steps that apply the kick before the drift end on a parabola whose start velocity contains an extra half kick. Steps
+// that apply the kick after the drift end on a parabola whose start velocity lacks half a kick.
 Path look_ahead_path(const Integrator& integrator, const Flight& flight, double time_step, double duration) {
     const Vec3& a = flight.acceleration;
     const double h = flight.path.duration;

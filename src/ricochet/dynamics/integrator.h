@@ -7,30 +7,33 @@
 
 namespace ricochet {
 
-/// Methods that a scene can name.
+/// Integration methods that a scene can select.
 enum class IntegratorKind {
-    forward_euler,     ///< order 1: straight lines, the velocity changes afterwards
-    symplectic_euler,  ///< order 1: kick, then drift in straight lines; a bounce reflects the drift
-    implicit_euler,    ///< order 1, stable for stiff forces: kick with the force at the end, then drift
+    forward_euler,     ///< order 1: straight path with the old velocity, then the velocity changes
+    symplectic_euler,  ///< order 1: kick, then straight drift; a bounce reflects the drift
+    implicit_euler,    ///< order 1, stable for stiff forces: kick with the force at the end of the step, then drift
     midpoint,          ///< order 2: explicit midpoint (Runge 1895)
-    velocity_verlet,   ///< order 2, symplectic for forces of position: parabola, mean of the forces at both ends
-    rk4,               ///< order 4: the classical Runge-Kutta method (Kutta 1901)
-    dormand_prince,    ///< order 5(4), adaptive: each particle chooses its substeps by its own error
-    ballistic,         ///< constant acceleration over the step: a parabola, exact for constant acceleration
+    /// Order 2: parabolic path, velocity from the mean of the forces at both ends; symplectic for forces that depend
+    /// only on position.
+    velocity_verlet,
+    rk4,             ///< order 4: the classical Runge-Kutta method (Kutta 1901)
+    dormand_prince,  ///< order 5(4), adaptive: the error of each particle determines its substeps
+    ballistic,       ///< constant acceleration over the step: a parabolic path, exact if the acceleration is constant
 };
 
 /// Error tolerance of one adaptive substep.
 struct ErrorTolerance {
-    double position = 1e-6;  ///< in m, > 0; also for the path between a substep's ends
-    double velocity = 1e-6;  ///< in m/s, > 0
+    /// Tolerance of the position, in m, > 0; also applies to the path between the ends of a substep.
+    double position = 1e-6;
+    double velocity = 1e-6;  ///< tolerance of the velocity, in m/s, > 0
 
     friend bool operator==(const ErrorTolerance&, const ErrorTolerance&) = default;
 };
 
-/// A method with its settings.
+/// An integration method with its settings.
 struct Integrator {
     IntegratorKind kind = IntegratorKind::ballistic;
-    ErrorTolerance tolerance = {};  ///< of dormand_prince
+    ErrorTolerance tolerance = {};  ///< used by dormand_prince
 
     Integrator() = default;
     Integrator(IntegratorKind k) : kind(k) {}  // NOLINT(google-explicit-constructor): most methods have no settings
@@ -39,8 +42,8 @@ struct Integrator {
 };
 
 [[nodiscard]] std::string_view name_of(IntegratorKind kind);
-/// Returns true for the methods that first add the whole step's force to the velocity and then drift in a straight
-/// line.
+/// Returns true for the methods that first change the velocity by the force of the whole step, and then drift in a
+/// straight line.
 [[nodiscard]] constexpr bool kicks_first(IntegratorKind kind) {
     return kind == IntegratorKind::symplectic_euler || kind == IntegratorKind::implicit_euler;
 }

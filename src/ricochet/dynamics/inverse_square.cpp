@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace {
 
-/// Largest number of points in a leaf, unless they coincide.
+/// Largest number of points in a leaf. A leaf of coincident points may have more.
 constexpr std::size_t kLeaf = 32;
 /// Leaves and points per unit of parallel work.
 constexpr std::size_t kLeafBlock = 16;
@@ -65,8 +65,9 @@ SourceTree::SourceTree(const Sources& sources)
     find_moments();
 }
 
-/// Sorts a node's points along the Z-order curve through a cube around them, and splits the node by the curve's cells.
-/// outer_side: edge of the cube that could not separate the points. Coincident points stay together.
+/// Sorts a node's points along the Z-order curve through a cube around them, and splits the node by the cells of the
+/// curve. outer_side: edge of the enclosing cube, whose cells could not separate the points. Coincident points remain
+/// in one leaf.
 void SourceTree::refine(std::size_t node, double outer_side) {
     const std::size_t begin = nodes_[node].begin;
     const std::size_t count = nodes_[node].end - begin;
@@ -91,7 +92,7 @@ void SourceTree::split(std::size_t node, std::span<const std::uint64_t> keys, co
     const std::uint32_t begin = nodes_[node].begin;
     const std::uint32_t end = nodes_[node].end;
     if (end - begin <= kLeaf) return;
-    constexpr unsigned kTopDigit = 61;  // the lowest bit of a key's first digit
+    constexpr unsigned kTopDigit = 61;  // lowest bit of the first digit of a key
     if (kTopDigit < cells.index_bits + 3 * level) return refine(node, cells.side);
     const unsigned shift = kTopDigit - 3 * level;
     const auto digit_at = [&](std::size_t k) { return static_cast<unsigned>(keys[k - cells.first] >> shift & 7U); };
@@ -167,7 +168,7 @@ void SourceTree::take_children(Node& node) const {
         node.second = node.second + child.second + mixed_product(child.first, arm) + child.weight * outer_product(arm);
         reach = std::max(reach, length(arm) + child.reach);
     }
-    // The reach is also limited by the farthest corner of the box.
+    // The distance to the farthest corner of the box is another upper bound of the reach.
     node.reach = std::min(reach, length(max(node.box.upper - node.center, node.center - node.box.lower)));
 }
 

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the library: sums of the inverse-square law over many sources, directly and by a tree.
+/// Sums of the inverse-square law over many sources, directly and by a tree. Private to the library.
 #pragma once
 
 #include <cstdint>
@@ -12,68 +12,70 @@
 
 namespace ricochet {
 
-/// Points with weights (masses or charges) that all act on each other. The softening length is e. The field g and
+/// Points with weights (masses or charges) that all act on each other. With the softening length e, the field g and
 /// potential f at point i are:
 ///
 ///     g_i = sum over j of w_j (x_j - x_i) / (|x_j - x_i|^2 + e^2)^(3/2);
 ///     f_i = sum over j of w_j / (|x_j - x_i|^2 + e^2)^(1/2).
 ///
-/// The sums exclude j = i, and coincident points if e = 0. Lists have the same length.
+/// The sums exclude j = i. If e = 0, they also exclude points that coincide with point i. Both lists have the same
+/// length.
 struct Sources {
     std::span<const Vec3> positions;  ///< in m
     std::span<const double> weights;
     double softening = 0.0;  ///< in m
 };
 
-/// Computes g by all pairs. Each point accumulates its own sum in the order of the points, so the bits do not depend on
-/// threads.
+/// Computes the field g from all pairs. The sum of each point is accumulated in the order of the points, so the bits do
+/// not depend on threads.
 void direct_field(const Sources& sources, std::span<Vec3> field);
-/// Computes f in the same way.
+/// Computes the potential f from all pairs, in the same order.
 void direct_potential(const Sources& sources, std::span<double> potential);
 
-/// Numbers of interactions in a sum by a tree.
+/// Numbers of interactions that a sum by a tree has evaluated.
 struct TreeWork {
     std::uint64_t with_points = 0;
     std::uint64_t with_groups = 0;
 };
 
-/// The sources as an octree. Nearby points form groups. The effect of a distant group follows from its weight and its
-/// first and second moments about its centre. Its shape depends only on the positions and their order. Source: J.
-/// Barnes, P. Hut, Nature 324, 1986; the criterion, by the farthest point of a group, is that of J. K. Salmon, M. S.
-/// Warren, J. Comput. Phys. 111, 1994.
+/// The sources as an octree. Nearby points form groups. The effect of a distant group is computed from its weight and
+/// its first and second moments about its centre. The shape of the tree depends only on the positions and their order.
+/// Source of the method: J. Barnes, P. Hut, Nature 324, 1986. The opening criterion uses the farthest point of a group:
+/// J. K. Salmon, M. S. Warren, J. Comput. Phys. 111, 1994.
 class SourceTree {
 public:
     /// The data behind the spans of `sources` must outlive the tree.
     explicit SourceTree(const Sources& sources);
 
-    /// Computes g. opening: see InverseSquareSettings. Adds to `work` unless it is null.
+    /// Computes the field g. opening: see InverseSquareSettings. Adds the numbers of interactions to `work` unless it
+    /// is null.
     void field(double opening, std::span<Vec3> field, TreeWork* work = nullptr) const;
-    /// Computes f.
+    /// Computes the potential f.
     void potential(double opening, std::span<double> potential) const;
 
 private:
     struct Node {
-        Vec3 center;              // centre of the absolute weights, in m
-        double reach = 0.0;       // upper bound of the distance of its points from the centre, in m
+        Vec3 center;              // mean position of the points, weighted by absolute weights, in m
+        double reach = 0.0;       // upper bound of the points' distances from the centre, in m
         double weight = 0.0;      // zeroth moment
         Vec3 first;               // first moment about the centre
         SymmetricMatrix second;   // second moment about the centre
         Box3 box;                 // bounds of the points
         double magnitude = 0.0;   // sum of absolute weights
-        std::uint32_t begin = 0;  // range of its points in sorted order
+        std::uint32_t begin = 0;  // range of the node's points in sorted order
         std::uint32_t end = 0;
-        std::uint32_t child = 0;     // the first of its children, which are contiguous
-        std::uint32_t children = 0;  // 0: a leaf
+        std::uint32_t child = 0;     // index of the first child; the children are contiguous
+        std::uint32_t children = 0;  // number of children; 0 in a leaf
     };
-    /// Nodes that act on the points of a leaf.
+    /// Nodes whose effects on the points of a leaf are summed.
     struct Interactions {
         std::vector<std::uint32_t> groups;  // nodes used through their moments
         std::vector<std::uint32_t> leaves;  // nodes used through their points
     };
-    /// Cells encoded in the keys of sorted points.
+    /// Encoding of cells in the keys of sorted points.
     struct Cells {
-        std::size_t first = 0;    // index of the point of the first key
-        unsigned index_bits = 0;  // low bits of a key that do not encode a cell
+        std::size_t first = 0;    // index of the point that the first key belongs to
+        unsigned index_bits = 0;  // number of low bits of a key that encode the point's index instead of a cell
         double side = 0.0;        // edge of the cube, in m
     };
 
@@ -88,7 +90,7 @@ private:
     std::vector<std::uint32_t> order_;  // original index of each sorted point
     std::vector<Vec3> position_;        // sorted
     std::vector<double> weight_;        // sorted
-    std::vector<Node> nodes_;           // parents before their children
+    std::vector<Node> nodes_;           // all nodes, parents before their children
     std::vector<std::uint32_t> leaves_;
 };
 

@@ -1,4 +1,4 @@
-// Gravity and charge between all particles.
+// Gravity and electrostatic forces between all particles.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ bool takes_tree(const InverseSquareSettings& settings, std::size_t particles) {
     return settings.method == SumMethod::tree;
 }
 
-/// Common part of both forces: sources of one kind with one law of distance.
+/// Common base of both forces: sources with weights of one kind, and one softening length.
 class InverseSquareForce : public ParticlesForce {
 public:
     explicit InverseSquareForce(const InverseSquareSettings& settings) : settings_(settings) {}
@@ -65,7 +65,7 @@ public:
 
 protected:
     [[nodiscard]] virtual std::span<const double> weights_of(const ParticlesView& particles) const = 0;
-    /// Returns the acceleration of particle k divided by the field there.
+    /// Returns the acceleration of particle k divided by the field at its position.
     [[nodiscard]] virtual double factor(const ParticlesView& particles, std::size_t k) const = 0;
 
 private:

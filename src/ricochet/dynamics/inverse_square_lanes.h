@@ -1,6 +1,6 @@
 /// \file
-/// Private to inverse_square.cpp: the innermost loops, written so that compilers vectorize them. Each lane accumulates
-/// its own sum in the order of the calls.
+/// Innermost loops of the sums, written so that compilers vectorize them. Private to inverse_square.cpp. Each lane
+/// accumulates its own sum in the order of the calls.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace ricochet {
 /// Number of points whose sums are computed in parallel lanes.
 inline constexpr std::size_t kLanes = 8;
 
-/// A group given by its moments about its centre.
+/// Moments of a group of points about its centre.
 struct GroupMoments {
     Vec3 center;
     double weight;
@@ -37,7 +37,7 @@ public:
         }
     }
 
-    /// Adds the fields of points. softening: square of the softening length.
+    /// Adds the fields of source points. softening: square of the softening length.
     void add_points(std::span<const Vec3> positions, std::span<const double> weights, double softening) {
         for (std::size_t j = 0; j < positions.size(); ++j) {
             const Vec3 p = positions[j];
@@ -57,8 +57,8 @@ public:
         }
     }
 
-    /// Adds the field of a group by expanding the softened potential to second order in the points' distances from the
-    /// centre. With d = x - centre, u = |d|^2 + e^2, weight W and moments D and M, the potential is:
+    /// Adds the field of a group. The softened potential is expanded to second order in the distances of the group's
+    /// points from its centre. With d = x - centre, u = |d|^2 + e^2, weight W and moments D and M, the potential is:
     ///
     ///     f = W u^(-1/2) + D.d u^(-3/2) + (3 d.M d u^(-5/2) - tr M u^(-3/2)) / 2.
     ///
@@ -98,7 +98,7 @@ private:
     std::array<double, kLanes> gz_{};
 };
 
-/// Returns the potential of points at another point.
+/// Returns the potential of source points at the position `at`.
 inline double point_potential(const Vec3& at, std::span<const Vec3> positions, std::span<const double> weights,
                               double softening) {
     double sum = 0.0;
@@ -109,7 +109,7 @@ inline double point_potential(const Vec3& at, std::span<const Vec3> positions, s
     return sum;
 }
 
-/// Returns the potential of a group at a point outside.
+/// Returns the potential of a group at the position `at`, outside the group.
 inline double group_potential(const GroupMoments& group, const Vec3& at, double softening) {
     const Vec3 d = at - group.center;
     const double inverse = 1.0 / (length_squared(d) + softening);

@@ -35,14 +35,14 @@ std::vector<double> column_of(const Particles& particles, const std::string& nam
 
 bool is_in_range(const Vec3& v) { return is_finite(v) && max_abs(v) <= kLargestJudged; }
 
-/// Throws RunError for a non-finite acceleration. Methods may try states that are out of range. These are handled when
-/// the particles reach them.
+/// Throws RunError for a non-finite acceleration. Integrators may try states that are out of range. Such a state is an
+/// error only if the particles reach it.
 void refuse_if_not_finite(const ParticlesForce& force, std::size_t number, const ParticlesView& view,
                           std::span<const Vec3> accelerations) {
     const auto wrong =
         std::find_if_not(accelerations.begin(), accelerations.end(), [](const Vec3& a) { return is_finite(a); });
     if (wrong == accelerations.end()) return;
-    // Valid forces may overflow, for example if two particles almost coincide.
+    // Valid forces of these kinds may overflow, for example if two particles almost coincide.
     if (steepness_of(force) || lacks_softening(force)) return;
     if (!std::all_of(view.positions.begin(), view.positions.end(), is_in_range)) return;
     if (!std::all_of(view.velocities.begin(), view.velocities.end(), is_in_range)) return;

@@ -1,6 +1,6 @@
 /// \file
-/// Private to the library: the forces between particles of a simulation, each with the members of a system that it acts
-/// on.
+/// Forces between the particles of a simulation. Each force has a list of the members of a system that it acts on.
+/// Private to the library.
 #pragma once
 
 #include <cstdint>
@@ -20,22 +20,22 @@ public:
     explicit MutualForces(std::vector<ParticlesForceEntry> entries);
 
     [[nodiscard]] bool empty() const { return entries_.empty(); }
-    /// Returns true if one of the forces acts on particle i.
+    /// Returns true if any of the forces acts on particle i.
     [[nodiscard]] bool act_on(const Particles& particles, std::size_t i) const;
     [[nodiscard]] bool depend_on_velocity() const;
 
-    /// Sets the members of a system: ascending indices of particles; frozen particles are skipped. Throws InputError
-    /// for an attribute that particles do not have.
+    /// Sets the members of a system. members: ascending indices of particles. Frozen particles are skipped. Throws
+    /// InputError if a force reads an attribute that the particles do not have.
     void assign(const Particles& particles, std::span<const std::uint32_t> members);
-    /// Computes the acceleration of every member in this state, in m/s^2, as the sum of all forces in their order.
+    /// Computes the acceleration of every member in the given state, in m/s^2. Forces are added in their order.
     void accelerations(double time, std::span<const Vec3> positions, std::span<const Vec3> velocities,
                        std::span<Vec3> result) const;
-    /// Returns the potential energy in a state of the members, in J; nothing if one force has no potential.
+    /// Returns the potential energy of the members in the given state, in J; nothing if any force has no potential.
     [[nodiscard]] std::optional<double> potential_energy(double time, std::span<const Vec3> positions,
                                                          std::span<const Vec3> velocities) const;
 
 private:
-    /// View of a force on its members, except for their state.
+    /// Data of the members that a force acts on, without positions and velocities.
     struct Seen {
         std::vector<std::uint32_t> slots;  // indices among the members, ascending
         bool is_all = false;               // true if slots lists all members
@@ -44,7 +44,7 @@ private:
         std::vector<double> radii;
         std::vector<std::vector<double>> attributes;
     };
-    /// Positions and velocities of the members of a force. Unused if it acts on all particles.
+    /// Positions and velocities of the members that a force acts on. Unused if the force acts on all members.
     struct Gathered {
         std::vector<Vec3> positions;
         std::vector<Vec3> velocities;
@@ -55,8 +55,8 @@ private:
     [[nodiscard]] static ParticlesView view_of(const Seen& seen, double time, std::span<const Vec3> positions,
                                                std::span<const Vec3> velocities, Gathered& gathered);
 
-    std::vector<ParticlesForceEntry> entries_;  // lists of ids and emitters are sorted
-    std::vector<Seen> seen_;                    // by entry
+    std::vector<ParticlesForceEntry> entries_;  // forces, with sorted lists of ids and emitters
+    std::vector<Seen> seen_;                    // members of each entry
 };
 
 }  // namespace ricochet

@@ -15,10 +15,10 @@ namespace {
 
 /// Boxes per unit of parallel work.
 constexpr std::size_t kNeighbourGridBlock = 4096;
-/// Largest numbers of bits per axis and of levels: a key has 3 * 19 + 5 bits.
+/// Limits from the size of a key: 3 * 19 bits for the cell and 5 bits for the level.
 constexpr unsigned kMostAxisBits = 19;
 constexpr unsigned kFinestLevel = 31;
-/// Number of boxes in the sample that locates the region of most boxes.
+/// Approximate number of boxes in the sample from which the region of most boxes is estimated.
 constexpr std::size_t kSample = 1024;
 constexpr std::memory_order kUnordered = std::memory_order_relaxed;
 
@@ -29,13 +29,13 @@ double extent_of(const Box3& box) {
 
 }  // namespace
 
-/// Finds the pairs of one row's boxes with all later boxes and with the boxes of coarser levels.
+/// Search for the pairs of one row's boxes with boxes later in the order and with boxes of coarser levels.
 class NeighbourGrid::Search {
 public:
     Search(const NeighbourGrid& grid, std::vector<NeighbourPair>& found)
         : grid_(grid), mask_((std::uint64_t{1} << grid.bits_[0]) - 1), found_(found) {}
 
-    /// Searches all rows that begin among the boxes from `begin` to `end`.
+    /// Searches all rows whose first box is in the range from `begin` to `end`.
     void search_rows(std::size_t begin, std::size_t end) {
         const std::vector<Row>& rows = grid_.rows_;
         auto row =
@@ -45,7 +45,7 @@ public:
     }
 
 private:
-    /// Cells from `first` to `last`.
+    /// Range of cells from `first` to `last`, both included.
     struct Range {
         std::uint32_t first;
         std::uint32_t last;
@@ -66,8 +66,9 @@ private:
         }
     }
 
-    /// Returns, along one axis, the coarse cells of lower corners of boxes that may overlap a box whose corner is in
-    /// cell `at`.
+    /// Returns the range of coarse cells to search along one axis for a box whose lower corner is in the fine cell
+    /// `at`. All boxes that may overlap it have their lower corners in this range. shift: number of levels between both
+    /// cell sizes.
     [[nodiscard]] static Range coarse(std::uint32_t at, unsigned shift) {
         const std::uint32_t own = at >> shift;
         return {own == 0 ? 0 : own - 1, (at + 1) >> shift};
@@ -76,7 +77,8 @@ private:
         return static_cast<std::uint32_t>(grid_.sorted_[k].key & mask_);
     }
 
-    /// Writes every pair, and keeps the overlapping ones. A branch would be mispredicted, because overlaps are random.
+    /// Writes the pair at the end of the list, and increments the count only if the boxes overlap. The code has no
+    /// branch, because overlaps are random and a branch would often be mispredicted.
     void test(std::size_t a, std::size_t b) {
         if (count_ == found_.size()) found_.resize(std::max(kNeighbourGridBlock, 2 * count_));
         const std::uint32_t i = grid_.sorted_[a].index;
@@ -106,7 +108,7 @@ private:
         }
     }
 
-    /// Tests the pairs of two rows, which are both sorted by x.
+    /// Tests all pairs of boxes from the source row and a target row. Both rows are sorted by x.
     void merge(unsigned shift, Block target) {
         for (std::size_t a = source_.begin; a < source_.end && target.begin < target.end; ++a) {
             const Range x = coarse(x_of(a), shift);
@@ -118,14 +120,14 @@ private:
     const NeighbourGrid& grid_;
     std::uint64_t mask_;
     std::vector<NeighbourPair>& found_;
-    std::size_t count_ = 0;  // of found_, the overlapping pairs
+    std::size_t count_ = 0;  // number of overlapping pairs at the start of found_
     Block source_{};
 };
 
 const std::vector<NeighbourPair>& NeighbourGrid::find_pairs(std::span<const Box3> boxes) {
     pairs_.clear();
     if (!choose_cells(boxes)) {
-        sorted_.clear();  // find_near() must not find boxes of an earlier search either
+        sorted_.clear();  // find_near() must not find boxes of an earlier search
         return pairs_;
     }
     sort(boxes);
@@ -152,8 +154,8 @@ bool NeighbourGrid::choose_cells(std::span<const Box3> boxes) {
     return true;
 }
 
-/// Chooses the finest level and its cells so that most boxes lie in cells of their own size. Boxes outside are put into
-/// the outermost cells, which keeps neighbours adjacent.
+/// Chooses the finest level and its cells, so that most boxes lie in cells of about their own size. Boxes outside the
+/// region of the cells are assigned to the outermost cells, so neighbours remain in adjacent cells.
 void NeighbourGrid::choose_window(std::span<const Box3> boxes, double smallest) {
     std::array<std::vector<double>, 3> sample;
     Box3 all;
@@ -166,7 +168,7 @@ void NeighbourGrid::choose_window(std::span<const Box3> boxes, double smallest) 
         for (int axis = 0; axis < 3; ++axis) sample[static_cast<std::size_t>(axis)].push_back(boxes[k].lower[axis]);
     }
     std::array<double, 3> middle{};
-    double span = 0.0;  // extent of the region of most boxes, in m
+    double span = 0.0;  // extent of the region that contains most boxes, in m
     for (std::size_t axis = 0; axis < 3; ++axis) {
         std::vector<double>& x = sample[axis];
         if (x.empty()) x.push_back(all.lower[static_cast<int>(axis)]);
@@ -267,7 +269,7 @@ std::size_t NeighbourGrid::row_end(std::size_t row) const {
     return row + 1 < rows_.size() ? rows_[row + 1].begin : sorted_.size();
 }
 
-// A block searches the rows that begin in it.
+// Each block of parallel work searches the rows that begin in it.
 void NeighbourGrid::collect(std::vector<std::vector<NeighbourPair>>& found) {
     found.resize((sorted_.size() + kNeighbourGridBlock - 1) / kNeighbourGridBlock);
     parallel_for_blocks(sorted_.size(), kNeighbourGridBlock,
@@ -276,8 +278,8 @@ void NeighbourGrid::collect(std::vector<std::vector<NeighbourPair>>& found) {
                         });
 }
 
-/// Writes the pairs of all blocks, ascending. Each box has a range for the pairs in which it is the first. The order
-/// within a range depends on the threads until the range is sorted.
+/// Writes the pairs of all blocks in ascending order. For each box there is a range of the pairs in which this box is
+/// the first. The order within a range depends on the threads, so each range is sorted at the end.
 void NeighbourGrid::arrange(const std::vector<std::vector<NeighbourPair>>& found, std::size_t boxes) {
     ends_.assign(boxes + 1, 0);
     const auto for_all_pairs = [&](auto&& visit) {
@@ -321,7 +323,7 @@ void NeighbourGrid::find_near(const Box3& box, std::vector<std::uint32_t>& found
     }
 }
 
-/// Appends the boxes of a row that overlap `box`. cells: the first and the last cell of the row to search.
+/// Appends the indices of the boxes in a row that overlap `box`. cells: first and last cell of the row to search.
 void NeighbourGrid::find_in_row(std::size_t row, const std::array<std::uint32_t, 2>& cells, const Box3& box,
                                 std::vector<std::uint32_t>& found) const {
     const auto end = sorted_.begin() + static_cast<std::ptrdiff_t>(row_end(row));

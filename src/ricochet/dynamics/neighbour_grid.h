@@ -1,16 +1,18 @@
 /// \file
-/// Neighbour search: finds overlapping boxes by a sorted grid.
+/// Neighbour search: finds pairs of overlapping boxes with a sorted grid.
 ///
-/// Every box lies in the cell of its lower corner, in a grid whose cells are not smaller than the box. Cells have the
-/// size of the largest box divided by powers of two (levels), so a few boulders among sand cost little. Boxes are
-/// sorted by level and cell, so rows of cells along x are contiguous. Neighbouring rows are merged, without any table
-/// of cells.
+/// There is one grid per level. The cells of level 0 have the size of the largest box, and each further level halves
+/// this size. Every box is assigned to a level whose cells are not smaller than the box. Within the level, it is
+/// assigned to the cell of its lower corner. A few boulders among sand therefore cost little. Boxes are sorted by level
+/// and cell, so the boxes in a row of cells along x are contiguous. The search merges neighbouring rows and needs no
+/// table of cells.
 ///
-/// Work is proportional to the boxes and the pairs, for any distribution of the boxes. Exceptions are boxes far smaller
-/// than most, and boxes far outside the region of most: cells near them may be larger.
+/// The work is proportional to the numbers of boxes and pairs, for almost any distribution of the boxes. It can be
+/// larger for boxes that are far smaller than most boxes or far outside the region of most boxes. Such boxes may share
+/// large cells.
 ///
-/// Source of sorting instead of tables: S. Green, "Particle Simulation using CUDA", NVIDIA, 2010; of levels: H. Mio et
-/// al., Powder Technology 169 (2006).
+/// Sources: sorting instead of tables, S. Green, "Particle Simulation using CUDA", NVIDIA, 2010; levels, H. Mio et al.,
+/// Powder Technology 169 (2006).
 #pragma once
 
 #include <array>
@@ -24,7 +26,7 @@
 
 namespace ricochet {
 
-/// Two boxes by their indices, first < second.
+/// Indices of two boxes, first < second.
 struct NeighbourPair {
     std::uint32_t first = 0;
     std::uint32_t second = 0;
@@ -32,32 +34,34 @@ struct NeighbourPair {
     friend bool operator==(const NeighbourPair&, const NeighbourPair&) = default;
 };
 
-/// Finds pairs and reuses its memory in the next search. The pairs do not depend on the number of threads.
+/// Sorted grid that finds pairs of boxes. Its memory is reused in the next search. The pairs do not depend on the
+/// number of threads.
 class NeighbourGrid {
 public:
-    /// Largest memory of a search, in bytes per box, in addition to kBytesPerPair for each pair found. Local: a bound
-    /// that a test confirms.
+    /// Upper bounds of the memory of a search: kBytesPerBox for each box plus kBytesPerPair for each pair found. Local:
+    /// a test confirms these bounds.
     static constexpr double kBytesPerBox = 108.0;
     static constexpr double kBytesPerPair = 24.0;
 
-    /// Returns all pairs of boxes that have a point in common, ascending by (first, second). Boxes are finite or empty
-    /// (lower > upper); an empty box overlaps none. At most 2^32 - 1 boxes. The result is valid until the next call.
+    /// Returns all pairs of boxes that have a point in common, ascending by (first, second). Boxes must be finite or
+    /// empty (lower > upper). An empty box overlaps no box. The largest number of boxes is 2^32 - 1. The result is
+    /// valid until the next call.
     const std::vector<NeighbourPair>& find_pairs(std::span<const Box3> boxes);
     /// Returns the pairs of the last search.
     [[nodiscard]] const std::vector<NeighbourPair>& pairs() const { return pairs_; }
 
-    /// Appends the indices of all boxes of the last search that have a point in common with a box, in the order of the
-    /// cells. It is thread-safe.
+    /// Appends the indices of all boxes of the last search that have a point in common with `box`, in the order of the
+    /// cells. The function is thread-safe.
     void find_near(const Box3& box, std::vector<std::uint32_t>& found) const;
 
     /// Returns the allocated memory, in bytes.
     [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
-    /// Boxes of one level and one row of cells along x.
+    /// Boxes in one row of cells along x, of one level.
     struct Row {
-        std::uint64_t key;    ///< level, z and y, as in the boxes' keys
-        std::uint32_t begin;  ///< first of its boxes in sorted order
+        std::uint64_t key;    ///< level, z and y of the row, as in the keys of its boxes
+        std::uint32_t begin;  ///< index of the row's first box in sorted order
     };
     struct Block {
         std::size_t begin;
@@ -85,18 +89,19 @@ private:
     void find_in_row(std::size_t row, const std::array<std::uint32_t, 2>& cells, const Box3& box,
                      std::vector<std::uint32_t>& found) const;
 
-    double largest_cell_ = 0.0;                 // edge of a cell of level 0, in m
-    unsigned finest_ = 0;                       // the level with the smallest cells
-    Vec3 origin_;                               // lower corner of the cells, in m
-    std::array<std::uint32_t, 3> last_cell_{};  // of the finest level, along each axis
-    std::array<unsigned, 3> bits_{};            // bits of a key, for each axis
+    double largest_cell_ = 0.0;                 // edge length of the cells of level 0, in m
+    unsigned finest_ = 0;                       // number of the level with the smallest cells
+    Vec3 origin_;                               // lower corner of the grids, in m
+    std::array<std::uint32_t, 3> last_cell_{};  // last cell of the finest level along each axis
+    std::array<unsigned, 3> bits_{};            // number of bits of a key for each axis
     std::vector<KeyedIndex> sorted_;
     std::vector<KeyedIndex> spare_;
-    std::vector<Box3> boxes_;  // in sorted order
+    std::vector<Box3> boxes_;  // boxes in sorted order
     std::vector<Row> rows_;
-    std::vector<std::uint32_t> level_begin_;  // the first row of each level, and the end
+    // Index of the first row of each level; the last entry is the number of rows.
+    std::vector<std::uint32_t> level_begin_;
     std::vector<NeighbourPair> pairs_;
-    std::vector<std::size_t> ends_;  // for each box, the end of the pairs in pairs_ in which it is first
+    std::vector<std::size_t> ends_;  // for each box, the end of the range in pairs_ in which the box is first
 };
 
 }  // namespace ricochet

@@ -9,23 +9,23 @@
 namespace ricochet {
 namespace {
 
-/// Everything is searched again if more than 1 / kFew of the boxes have changed. Local, because only the cost depends
-/// on it.
+/// If more than 1 / kFew of the boxes have changed, update() searches all boxes again. Local, because only the cost
+/// depends on this value.
 constexpr std::size_t kFew = 8;
 
-/// Limit, as 1 / kFewLeft, for boxes that have left their kept boxes. The search for one box costs as much as for
-/// several in sequence.
+/// If more than 1 / kFewLeft of the boxes have left their kept boxes, find() searches all boxes again. A separate
+/// search for one box costs as much as several boxes in a search of all boxes.
 constexpr std::size_t kFewLeft = 32;
 
 /// Enlargement of a kept box on each side, relative to its size. In a settling pile whose spheres move by 1e-3 of their
-/// size per step, a twentieth of the spheres leave their kept boxes in ten steps. Twice the enlargement adds a tenth to
-/// the pairs to test. Local, because only the cost depends on it.
+/// size per step, a twentieth of the spheres leave their kept boxes in ten steps. With twice the enlargement, a tenth
+/// more pairs must be tested. Local, because only the cost depends on this value.
 constexpr double kLarger = 0.02;
 
-/// Smallest number of boxes for which the cache pays off.
+/// Smallest number of boxes for which the cache saves time.
 constexpr std::size_t kMany = 512;
 
-/// Searches without enlargement after enlarged boxes were not reused.
+/// Number of searches without enlargement after a search whose enlarged boxes were not reused.
 constexpr int kSearchesAsTheyAre = 16;
 
 /// Boxes or pairs per unit of parallel work.
@@ -35,7 +35,7 @@ bool comes_before(const NeighbourPair& a, const NeighbourPair& b) {
     return a.first != b.first ? a.first < b.first : a.second < b.second;
 }
 
-/// Returns the box. An empty box becomes the default box, which overlaps nothing.
+/// Returns the box. An empty box is replaced by the default box, which overlaps no box.
 Box3 as_asked(const Box3& box) { return box.empty() ? Box3{} : box; }
 
 Box3 larger(const Box3& box) {
@@ -47,12 +47,12 @@ bool contains(const Box3& outer, const Box3& inner) {
     return inner.empty() || (outer.contains(inner.lower) && outer.contains(inner.upper));
 }
 
-/// Merges pairs into others; both lists are ascending.
+/// Merges the list `news` into `pairs`. Both lists are ascending.
 void merge_into(std::vector<NeighbourPair>& pairs, const std::vector<NeighbourPair>& news) {
     auto end = static_cast<std::ptrdiff_t>(pairs.size());
     pairs.resize(pairs.size() + news.size());
     for (auto k = static_cast<std::ptrdiff_t>(news.size()) - 1; k >= 0;
-         --k) {  // from the last pair on, shifting all pairs behind it
+         --k) {  // backwards, shifting pairs that come after the new one
         const NeighbourPair& pair = news[static_cast<std::size_t>(k)];
         const auto at = std::upper_bound(pairs.begin(), pairs.begin() + end, pair, comes_before);
         std::move_backward(at, pairs.begin() + end, pairs.begin() + end + k + 1);
@@ -61,7 +61,7 @@ void merge_into(std::vector<NeighbourPair>& pairs, const std::vector<NeighbourPa
     }
 }
 
-/// Moves the items at the start of each block together. Returns their number.
+/// Removes the gaps between the blocks. The first left[k] items of block k are kept. Returns the number of kept items.
 template <class T>
 std::size_t close_gaps(std::vector<T>& items, const std::vector<std::size_t>& left) {
     std::size_t count = 0;
@@ -95,7 +95,7 @@ void NeighbourPairs::take(std::span<const Box3> boxes) {
     std::transform(boxes.begin(), boxes.end(), boxes_.begin(), as_asked);
 }
 
-/// Collects the boxes that have left their kept boxes. Returns false if there are too many.
+/// Collects in later_ the boxes that have left their kept boxes. Returns false if there are too many of them.
 bool NeighbourPairs::take_later(std::span<const Box3> boxes) {
     if (boxes.size() != kept_.size() || boxes.size() < kMany) return false;
     const std::size_t most = boxes.size() / kFewLeft;
@@ -126,7 +126,7 @@ void NeighbourPairs::find_anew(std::span<const Box3> boxes) {
     }
 }
 
-/// Selects the kept pairs that overlap, except pairs with a box in later_.
+/// Sets pairs_ to the pairs of kept boxes whose current boxes overlap, except pairs with a box in later_.
 void NeighbourPairs::take_kept() {
     is_later_.assign(boxes_.size(), 0);
     for (const std::uint32_t k : later_) is_later_[k] = 1;
@@ -164,7 +164,8 @@ const std::vector<NeighbourPair>& NeighbourPairs::update(std::span<const Box3> b
     return pairs_;
 }
 
-/// Adds the pairs of some of the changed boxes, ascending, whose pairs have been removed.
+/// Adds the pairs of the boxes `some`, which are in later_. Their old pairs must have been removed. some: ascending
+/// indices.
 void NeighbourPairs::add_pairs_of(std::span<const std::uint32_t> some) {
     std::vector<Box3> later_boxes;
     for (const std::uint32_t k : later_) later_boxes.push_back(boxes_[k]);

@@ -1,5 +1,5 @@
 /// \file
-/// Pairs of overlapping boxes, for repeated queries while the boxes change little.
+/// Cache of pairs of overlapping boxes, for repeated queries with boxes that change little.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,19 @@
 
 namespace ricochet {
 
-/// Cache of neighbour pairs. It stores a grid of slightly enlarged boxes, and a second grid of boxes that have left
-/// their enlarged boxes since. While these are few, only pairs of boxes that have been near each other are tested (L.
-/// Verlet, Phys. Rev. 159, 1967). If boxes move far between calls, they are not enlarged. The cache only saves time:
-/// the pairs are the same without it.
+/// Cache of neighbour pairs. It stores a grid of slightly enlarged boxes, the kept boxes. A second grid contains the
+/// boxes that have left their kept boxes since. While the second grid has few boxes, only pairs whose kept boxes
+/// overlap are tested again (L. Verlet, Phys. Rev. 159, 1967). If boxes move far between calls, they are not enlarged.
+/// The cache only saves time: the pairs are the same without it.
 class NeighbourPairs {
 public:
-    /// Returns pairs like NeighbourGrid::find_pairs().
+    /// Returns the same pairs as NeighbourGrid::find_pairs().
     const std::vector<NeighbourPair>& find(std::span<const Box3> boxes);
-    /// Returns the pairs if only the boxes with the indices `changed`, ascending, differ from the last call.
+    /// Returns the pairs if only some boxes differ from the last call. changed: indices of these boxes, ascending.
     const std::vector<NeighbourPair>& update(std::span<const Box3> boxes, std::span<const std::uint32_t> changed);
     [[nodiscard]] const std::vector<NeighbourPair>& all() const { return pairs_; }
 
-    /// Appends boxes like NeighbourGrid::find_near(), in any order, using the boxes of the last call.
+    /// Appends the indices of boxes of the last call that have a point in common with `box`, in any order.
     void find_near(const Box3& box, std::vector<std::uint32_t>& found) const;
 
 private:
@@ -33,16 +33,16 @@ private:
     void take_kept();
     void add_pairs_of(std::span<const std::uint32_t> some);
 
-    NeighbourGrid grid_;            // of the kept boxes
-    std::vector<Box3> kept_;        // the enlarged box of every box
+    NeighbourGrid grid_;            // grid of the kept boxes
+    std::vector<Box3> kept_;        // enlarged copy of every box
     std::vector<Box3> boxes_;       // all boxes of the last call
-    bool is_larger_ = false;        // kept boxes are enlarged
-    bool was_useful_ = false;       // kept boxes have been reused
-    int searches_as_they_are_ = 0;  // searches left before boxes are enlarged again
+    bool is_larger_ = false;        // true if the kept boxes are enlarged
+    bool was_useful_ = false;       // true if the kept boxes have been reused
+    int searches_as_they_are_ = 0;  // number of searches before boxes are enlarged again
     NeighbourGrid later_grid_;
-    std::vector<std::uint32_t> later_;      // the boxes in later_grid_, ascending
-    std::vector<std::uint8_t> is_later_;    // flag of every box: its kept box is out of date
-    std::vector<std::uint8_t> is_changed_;  // flag of every box, used within a call
+    std::vector<std::uint32_t> later_;      // indices of the boxes in later_grid_, ascending
+    std::vector<std::uint8_t> is_later_;    // for every box, 1 if its kept box is out of date
+    std::vector<std::uint8_t> is_changed_;  // for every box, a flag that is used within a call
     std::vector<NeighbourPair> pairs_;
 };
 

@@ -17,7 +17,7 @@ namespace {
 /// Pairs and particles per unit of parallel work.
 constexpr std::size_t kPairForcesBlock = 1024;
 
-/// Law of pairs: force and potential of two particles that are nearer than the cutoff.
+/// Pair law: force and potential of two particles within the cutoff.
 template <class Law>
 concept PairLawLike = requires(const Law& law, const PairState& pair) {
     { law.force(pair) } -> std::convertible_to<Vec3>;
@@ -25,10 +25,11 @@ concept PairLawLike = requires(const Law& law, const PairState& pair) {
     { law.cutoff() } -> std::convertible_to<double>;
 };
 
-/// Returns cubes that overlap if two particles may be nearer than the cutoff. Particles that are not finite get empty
-/// cubes.
+/// Returns a cube for every particle. The cubes of two particles overlap if the particles are within the cutoff.
+/// Particles with non-finite positions get empty cubes.
 std::vector<Box3> boxes_around(const ParticlesView& particles, double cutoff, bool between_surfaces) {
-    // Half of the cutoff for each, plus a margin for rounding. Local, because the exact distance decides.
+    // Each cube has half of the cutoff as its half edge, plus a margin for rounding. Local, because the computed
+    // distance decides.
     constexpr double kRounding = 1.0 + 0x1p-40;
     std::vector<Box3> boxes(particles.size());
     parallel_for_blocks(boxes.size(), kPairForcesBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -52,7 +53,7 @@ public:
           has_potential_(has_potential),
           depends_on_velocity_(depends_on_velocity) {}
 
-    // Threads compute each pair's force once; forces are added in the order of the pairs.
+    // Threads compute the force of each pair once. The forces are then added in the order of the pairs.
     void add_accelerations(const ParticlesView& particles, std::span<Vec3> result) const override {
         NeighbourGrid grid;
         const std::vector<NeighbourPair>& pairs = pairs_of(particles, grid);
@@ -106,7 +107,7 @@ private:
         return grid.find_pairs(boxes_around(particles, law_.cutoff(), between_surfaces_));
     }
 
-    /// Sets the state of a pair. Returns false for pairs beyond the cutoff and for coincident particles.
+    /// Computes the state of a pair. Returns false for pairs beyond the cutoff and for coincident particles.
     [[nodiscard]] bool find_state(const ParticlesView& particles, const NeighbourPair& pair, PairState& state) const {
         const std::size_t i = pair.first;
         const std::size_t j = pair.second;

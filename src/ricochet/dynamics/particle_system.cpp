@@ -59,7 +59,7 @@ void ParticleSystem::expect_reactions(std::span<const Vec3> reactions) {
     for (std::size_t k = 0; k < size(); ++k) constants_[k].reaction = reactions[k];
 }
 
-// Collects the springs between members. The caller must account for springs with only one member.
+// Collects the springs between two members. The caller must handle springs that have only one end among the members.
 void ParticleSystem::link(std::size_t particle_count) {
     std::vector<std::uint32_t> member_of(particle_count, kNoMember);
     for (std::size_t k = 0; k < size(); ++k) member_of[members_[k]] = static_cast<std::uint32_t>(k);

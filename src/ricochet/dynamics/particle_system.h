@@ -1,5 +1,5 @@
 /// \file
-/// Particles that act on each other as one system of ordinary differential equations: the interface of classical
+/// Particles that act on each other, as one system of ordinary differential equations. This is the usual interface for
 /// solvers.
 #pragma once
 
@@ -19,46 +19,48 @@ namespace ricochet {
 
 class MutualForces;
 
-/// Phase-space vector of a system of particles, its dimension, and its derivative at a time: all that a solver of
-/// ordinary differential equations needs. Entries 6 i to 6 i + 5 are x, y, z (m) and vx, vy, vz (m/s) of member i. The
-/// derivative has the velocity and the acceleration at the same indices, and zeros for pinned members.
+/// System of particles for a solver of ordinary differential equations. It provides the phase-space vector, its
+/// dimension, and its derivative at a time. Entries 6 i to 6 i + 5 of the vector are x, y, z (m) and vx, vy, vz (m/s)
+/// of member i. The derivative contains the velocity and the acceleration at the same indices. It is zero for pinned
+/// members.
 ///
 /// Source of the interface: A. Witkin, "Physically Based Modeling: Particle System Dynamics", SIGGRAPH course notes,
 /// 2001 (dimension, get state, set state, derivative).
 class ParticleSystem {
 public:
-    /// Spring of the system; both ends are member indices.
+    /// Spring of the system. `first` and `second` are member indices of its ends.
     struct Bond {
         std::uint32_t spring = 0;
         std::uint32_t first = 0;
         std::uint32_t second = 0;
     };
 
-    /// Both arguments must outlive the system. The springs must be bound to the particles of assign().
+    /// Both arguments must outlive the system. The springs must be bound to the particles that assign() receives.
     ParticleSystem(const ForceField& forces, const SpringNetwork& springs) : forces_(forces), springs_(springs) {}
-    /// Adds forces between the members. They must also outlive the system and have the same members assigned.
+    /// Creates a system with forces between the members. `mutual` must also outlive the system. The same members must
+    /// be assigned to it.
     ParticleSystem(const ForceField& forces, const SpringNetwork& springs, const MutualForces& mutual)
         : forces_(forces), springs_(springs), mutual_(&mutual) {}
 
-    /// Sets the members to these particles, by ascending index, in their current state. Throws InputError for members
-    /// that do not exist or do not ascend. All functions throw it for members past the end and lists without size()
-    /// entries.
+    /// Sets the members and copies their current state. members: ascending indices of particles. Throws InputError for
+    /// members that do not exist or are not ascending. All functions throw InputError for a member index past the end
+    /// and for lists whose length is not size().
     void assign(const Particles& particles, std::span<const std::uint32_t> members, double time);
 
-    // The classical interface.
+    // The usual interface of solvers.
 
     /// Returns the length of the phase-space vector: six for each member.
     [[nodiscard]] std::size_t dimension() const { return 6 * size(); }
     [[nodiscard]] double time() const { return time_; }  ///< in s
     void set_time(double time) { time_ = time; }
-    /// Copies the state to a vector of dimension() entries. It and the two functions below throw InputError for another
-    /// length.
+    /// Copies the state to a vector of dimension() entries. This function and the functions below throw InputError for
+    /// a vector of another length.
     void get_state(std::span<double> state) const;
-    /// Sets the state from a vector. Positions and velocities of pinned members do not change.
+    /// Sets the state from a vector. Pinned members do not change.
     void set_state(std::span<const double> state);
     /// Computes the derivative of the current state at a time, in s.
     void derivative(double time, std::span<double> result) const;
-    /// Computes the derivative of any state at a time, for solvers that store the state themselves.
+    /// Computes the derivative of the given state at a time, in s, for solvers that store the state themselves.
     void derivative(double time, std::span<const double> state, std::span<double> result) const;
 
     // The same data as vectors, for solvers that separate positions from velocities.
@@ -68,20 +70,21 @@ public:
     [[nodiscard]] std::span<const std::uint32_t> members() const { return members_; }
     [[nodiscard]] const std::vector<Vec3>& positions() const { return position_; }   ///< in m
     [[nodiscard]] const std::vector<Vec3>& velocities() const { return velocity_; }  ///< in m/s
-    /// Sets the expected acceleration of each member by surfaces in this step, in m/s^2. It is included in all
-    /// accelerations until the next assign().
+    /// Sets the acceleration of each member that is expected from surfaces in this step, in m/s^2. These values are
+    /// included in all accelerations until the next assign().
     void expect_reactions(std::span<const Vec3> reactions);
-    /// Returns the expected acceleration of member i by surfaces, in m/s^2.
+    /// Returns the acceleration of member i that is expected from surfaces, in m/s^2.
     [[nodiscard]] const Vec3& expected_reaction(std::size_t i) const { return constants(i).reaction; }
     void set_phase(std::span<const Vec3> positions, std::span<const Vec3> velocities);
-    /// Computes the accelerations of all members in a state, in m/s^2; zero for pinned members.
+    /// Computes the accelerations of all members in the given state, in m/s^2. Accelerations of pinned members are
+    /// zero.
     void accelerations(double time, std::span<const Vec3> positions, std::span<const Vec3> velocities,
                        std::span<Vec3> result) const;
-    /// Returns the accelerations of all members by the forces between them, in m/s^2; empty if there are no such
-    /// forces.
+    /// Returns the accelerations of all members by forces between members, in m/s^2. Springs are not included. The list
+    /// is empty if there are no such forces.
     [[nodiscard]] std::vector<Vec3> mutual_accelerations(double time, std::span<const Vec3> positions,
                                                          std::span<const Vec3> velocities) const;
-    /// Computes the accelerations for a known result of mutual_accelerations() in that state.
+    /// Computes the accelerations in the given state. mutual: result of mutual_accelerations() in the same state.
     void accelerations(double time, std::span<const Vec3> positions, std::span<const Vec3> velocities,
                        std::span<const Vec3> mutual, std::span<Vec3> result) const;
     /// Returns true if forces between the members depend on velocities.
@@ -89,14 +92,14 @@ public:
     /// Returns the sum of the spring forces on member i, in N.
     [[nodiscard]] Vec3 spring_force_on(std::size_t i, std::span<const Vec3> positions,
                                        std::span<const Vec3> velocities) const;
-    /// Returns the sum of the spring forces on member i, in N, in a state given by state_of(k) for every member k. The
-    /// returned objects have a position and a velocity.
+    /// Returns the sum of the spring forces on member i, in N. state_of(k) returns an object with the position and
+    /// velocity of member k.
     template <class StateOf>
     [[nodiscard]] Vec3 spring_force_in(std::size_t i, const StateOf& state_of) const;
     /// Returns the acceleration of member i by forces on single particles, in m/s^2.
     [[nodiscard]] Vec3 own_acceleration(std::size_t i, double time, const Vec3& position, const Vec3& velocity) const;
-    /// Returns the derivative of own_acceleration() at the end of a backward Euler step with respect to the velocity
-    /// there: three columns, in 1/s; see acceleration_slope().
+    /// Returns the derivative of own_acceleration() at the end of a backward Euler step with respect to the end
+    /// velocity. The three columns are in 1/s, see acceleration_slope().
     [[nodiscard]] std::array<Vec3, 3> own_slope(std::size_t i, const Vec3& end_velocity, double duration) const;
     /// Returns the energy stored in the springs, in J.
     [[nodiscard]] double spring_energy(std::span<const Vec3> positions) const;
@@ -108,7 +111,7 @@ public:
     [[nodiscard]] bool is_pinned(std::size_t i) const { return constants(i).pinned; }
     [[nodiscard]] double mass(std::size_t i) const { return constants(i).mass; }  ///< in kg
     [[nodiscard]] std::uint64_t id(std::size_t i) const { return constants(i).id; }
-    /// Returns the force input of member i in this state.
+    /// Returns the force input of member i in the given state.
     [[nodiscard]] ForceInput input(std::size_t i, double time, const Vec3& position, const Vec3& velocity) const;
     /// Returns true if the forces on single particles depend on neither position, velocity nor time.
     [[nodiscard]] bool has_uniform_forces() const { return forces_.is_uniform(); }
@@ -120,12 +123,12 @@ private:
         double mass = 1.0;
         double radius = 0.0;
         bool pinned = false;
-        Vec3 reaction{};  // in m/s^2, expected from surfaces
+        Vec3 reaction{};  // acceleration expected from surfaces, in m/s^2
     };
     struct Link {
         std::uint32_t spring = 0;
         std::uint32_t other = 0;
-        bool is_first = true;  // the member is the spring's first end
+        bool is_first = true;  // true if the member is the spring's first end
     };
     [[nodiscard]] const Constants& constants(std::size_t i) const {
         require_index(i, constants_.size(), "member of a system");
@@ -142,12 +145,13 @@ private:
     std::vector<Vec3> position_;
     std::vector<Vec3> velocity_;
     std::vector<Bond> bonds_;
-    std::vector<std::uint32_t> first_link_;  // size() + 1 offsets into links_
+    std::vector<std::uint32_t> first_link_;  // offset of each member in links_; size() + 1 entries
     std::vector<Link> links_;
     double time_ = 0.0;
 };
 
-// Every member accumulates its own sum, in the order of the springs, so no two threads write to one entry.
+// The forces on a member are summed in the order of its springs. Threads handle different members, so no two threads
+// write to the same entry.
 template <class StateOf>
 Vec3 ParticleSystem::spring_force_in(std::size_t i, const StateOf& state_of) const {
     require_index(i, size(), "member of a system");
@@ -166,8 +170,8 @@ Vec3 ParticleSystem::spring_force_in(std::size_t i, const StateOf& state_of) con
     return sum;
 }
 
-/// User-defined solver: advances the system by `duration` seconds through the classical interface. It must be a pure
-/// function of the system's state.
+/// User-defined solver. It advances the system by `duration` seconds through the solver interface of ParticleSystem. It
+/// must be a pure function of the system's state.
 using SystemSolver = std::function<void(ParticleSystem& system, double duration)>;
 
 }  // namespace ricochet

@@ -17,7 +17,7 @@ namespace ricochet {
 
 namespace {
 
-// Arrays of frames, columns of tables, and arrays that renderers derive from them.
+// Reserved names: arrays in frame files, columns of tables, and arrays that renderers derive from them.
 constexpr std::array<std::string_view, 29> kOwnArrays = {
     "id",       "x",       "y",        "z",       "vx",          "vy",        "vz",     "position",
     "velocity", "mass",    "radius",   "age",     "contacts",    "resting",   "frozen", "unsimulated_time",
@@ -123,8 +123,8 @@ std::vector<AttributeValue> AttributeTable::at(std::size_t i) const {
 
 namespace {
 
-// Orders particles by a table of owners, which is faster than sorting if ids are dense. Returns false, without changes,
-// if ids are sparse or not unique.
+// Orders particles by id with a table that maps ids to indices. If ids are dense, this is faster than sorting. Returns
+// false, without changes, if ids are sparse or not unique.
 bool put_in_order_by_table(const std::vector<std::uint64_t>& id, std::vector<std::uint32_t>& order) {
     constexpr std::uint64_t kMostPlacesAnEntry = 8;
     constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
@@ -185,7 +185,7 @@ void Particles::compact(const std::vector<std::uint8_t>& keep) {
     require_same_length(keep.size(), size(), "particles to be kept");
     const auto keep_in_all = [&keep](auto&... list) {
         const std::array<std::function<void()>, sizeof...(list)> each{[&list, &keep] { keep_marked(list, keep); }...};
-        // This only moves memory, so threads pay off only for large arrays.
+        // The work consists only of memory moves, so threads save time only for large arrays.
         constexpr std::size_t kMany = 16384;
         parallel_for_blocks(each.size(), keep.size() < kMany ? each.size() : 1,
                             [&each](std::size_t, std::size_t begin, std::size_t end) {

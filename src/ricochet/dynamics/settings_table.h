@@ -1,5 +1,5 @@
 /// \file
-/// Private to the library: tables of settings of heat, bodies and springs, see core/setting.h.
+/// Tables of the settings of heat, bodies and springs, see core/setting.h. Private to the library.
 #pragma once
 
 #include "ricochet/core/setting.h"
@@ -9,7 +9,7 @@
 
 namespace ricochet {
 
-/// Without the flow.
+/// Settings of Convection, without the flow.
 inline constexpr Setting<Convection> kConvectionTable[] = {
     {"coefficient", &Convection::coefficient, kNotNegative, "W/(m^2 K)",
      "Coefficient h in dT/dt = -h A (T - Ta) / (m c). It excludes all other keys.", "the correlation"},
@@ -36,7 +36,7 @@ inline constexpr Setting<HeatSettings> kHeatFractionTable[] = {
      "Fraction of the energy lost by friction, in impacts and in contact, that heats the particle."},
 };
 
-/// Initial motion of a body.
+/// Settings of the initial motion of a body.
 inline constexpr Setting<BodyDescription> kBodyMotionTable[] = {
     {"velocity", &BodyDescription::velocity, kSpeed, "m/s", "Velocity of the centre of mass of a free body at 0 s."},
     {"angular_velocity", &BodyDescription::angular_velocity, kSpeed, "rad/s",
@@ -45,7 +45,7 @@ inline constexpr Setting<BodyDescription> kBodyMotionTable[] = {
      "Speed at 0 s: of the rotation on a hinge, by the right-hand rule, or of the motion along a slider."},
 };
 
-/// In the order of the fingerprint.
+/// Settings of a joint, in the order in which the fingerprint reads them.
 inline constexpr Setting<JointSettings> kJointTable[] = {
     {"spring", &JointSettings::spring, kNotNegative, "N m/rad or N/m",
      "Spring constant of a hinge or slider: moment or force towards `spring_rest`, per angle or distance from it."},
@@ -63,14 +63,15 @@ inline constexpr Setting<JointSettings> kJointTable[] = {
      "Largest moment or force of the motor. 0 means no motor."},
 };
 
-/// Without the ends.
+/// Settings of a spring, without its ends.
 inline constexpr Setting<Spring> kSpringTable[] = {
     {"rest_length", &Spring::rest_length, kLengthOrZero, "m", "Length at which it neither pulls nor pushes.",
      "the distance of its ends at the start"},
     {"stiffness", &Spring::stiffness, kLengthOrZero, "N/m", "Force divided by stretch.", "", kMustBeGiven},
 };
 
-/// Damping and breaking: for Spring, RopeSettings and ClothSettings, which have the same members.
+/// Settings of damping and breaking, for Spring, RopeSettings and ClothSettings. These structures have the same members
+/// for them.
 template <class Struct>
 inline constexpr Setting<Struct> kDampingTable[] = {
     {"damping", &Struct::damping, kLengthOrZero, "N s/m",
@@ -91,7 +92,7 @@ inline constexpr Setting<RopeSettings> kRopeLengthTable[] = {
      "the distance of its ends"},
 };
 
-/// Without the direction `sag`.
+/// Settings of a rope, without the direction `sag`.
 inline constexpr Setting<RopeSettings> kRopeTable[] = {
     {"mass", &RopeSettings::mass, kMass, "kg", "Total mass.", "", kMustBeGiven},
     {"radius", &RopeSettings::radius, kLengthOrZero, "m", "Radius of its particles."},
@@ -100,7 +101,7 @@ inline constexpr Setting<RopeSettings> kRopeTable[] = {
      "Stiffness E A of the material. The stiffness of a segment is this value divided by its rest length."},
 };
 
-/// Without the mass per area, which scenes can also give as a total.
+/// Settings of cloth, without the mass per area. A scene can give the total mass instead.
 inline constexpr Setting<ClothSettings> kClothTable[] = {
     {"radius", &ClothSettings::radius, kLengthOrZero, "m", "Radius of its particles."},
     {"stiffness", &ClothSettings::stiffness, kLengthOrZero, "N/m", "Stiffness of the springs along the edges.", "",

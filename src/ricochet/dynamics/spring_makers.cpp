@@ -23,7 +23,7 @@ double asinh_of(double t) {
     return std::copysign(portable_log(magnitude + std::sqrt(magnitude * magnitude + 1.0)), t);
 }
 
-/// Returns the x > 0 with sinh(x) / x = ratio > 1, by bisection; the function increases from 1.
+/// Returns x > 0 with sinh(x) / x = ratio, for ratio > 1, by bisection. sinh(x) / x increases from 1 at x = 0.
 double solve_sinh_ratio(double ratio) {
     double high = 1.0;
     while (sinh_of(high) < ratio * high) high *= 2.0;
@@ -34,9 +34,10 @@ double solve_sinh_ratio(double ratio) {
 
 }  // namespace
 
-// With the parameter a, the point at arc length s from the lowest point lies a asinh(s / a) across and sqrt(a^2 + s^2)
-// up. The ends are at asinh(s / a) = middle -+ x with sinh(x) / x = sqrt(L^2 - rise^2) / across, tanh(middle) = rise /
-// L and a = across / (2 x).
+// Let s be the arc length from the lowest point of a catenary with the parameter a. The horizontal coordinate is a
+// asinh(s / a), and the vertical coordinate is sqrt(a^2 + s^2). At the ends of the rope, asinh(s / a) is middle - x and
+// middle + x. With the length L, sinh(x) / x = sqrt(L^2 - rise^2) / across, tanh(middle) = rise / L, and a = across /
+// (2 x).
 std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length_of_rope, const Vec3& up, std::size_t count) {
     const Vec3 chord = to - from;
     const double rise = dot(chord, up);
@@ -44,7 +45,7 @@ std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length_of_ro
     const double across = length(level);
     const bool is_taut = length_of_rope <= length(chord) * (1.0 + kTautRope);
     const bool is_folded = across <= kFoldedRope * length_of_rope;
-    const double depth = 0.5 * (length_of_rope - rise);  // of a folded rope
+    const double depth = 0.5 * (length_of_rope - rise);  // depth of a folded rope, in m
     double x = 0.0;
     double middle = 0.0;
     double a = 0.0;
@@ -198,7 +199,7 @@ SpringBody make_cloth(const TriangleMesh& mesh, const ClothSettings& settings) {
     const auto distance = [&](std::uint32_t a, std::uint32_t b) { return length(mesh.vertices[b] - mesh.vertices[a]); };
     for (const MeshEdge& edge : edges) {
         const double rest_length = distance(edge.first, edge.second);
-        // A spring without a length has no relative stretch and cannot break.
+        // A spring with the rest length 0 has no relative stretch and cannot break.
         const double limit = rest_length > 0.0 ? settings.breaking_stretch : std::numeric_limits<double>::infinity();
         cloth.springs.push_back({edge.first, edge.second, rest_length, settings.stiffness, settings.damping, limit});
     }

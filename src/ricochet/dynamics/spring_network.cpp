@@ -18,7 +18,7 @@ namespace ricochet {
 
 namespace {
 
-/// Springs per block of the energy's sum.
+/// Number of springs per block of parallel work in the sum of the energy.
 constexpr std::size_t kBlock = 1024;
 
 void check(const Spring& spring, std::size_t number) {
@@ -33,7 +33,7 @@ void check(const Spring& spring, std::size_t number) {
     }
 }
 
-/// Finds indices by id.
+/// Map from ids to indices.
 class Indices {
 public:
     explicit Indices(std::span<const std::uint64_t> ids) : ids_(ids) {
@@ -66,12 +66,13 @@ private:
     }
 
     std::span<const std::uint64_t> ids_;
-    std::vector<std::uint32_t> order_;  // of ids; empty if they are sorted
+    std::vector<std::uint32_t> order_;  // indices in ascending order of ids; empty if the ids are already sorted
 };
 
 }  // namespace
 
-// Swapping the ends only changes the signs of all differences, so the forces are exactly opposite.
+// If the ends are swapped, all differences only change their signs. The forces on the two ends are therefore exactly
+// opposite.
 Vec3 spring_force(const Spring& spring, const Vec3& x_first, const Vec3& v_first, const Vec3& x_second,
                   const Vec3& v_second) {
     const Vec3 d = x_second - x_first;
@@ -109,7 +110,7 @@ void SpringNetwork::bind(std::span<const std::uint64_t> ids) {
     compile_links();
 }
 
-// Bonds are in the order of spring numbers, and a counting sort keeps that order for every particle.
+// Bonds are in the order of spring numbers. A counting sort keeps this order in the list of every particle.
 void SpringNetwork::compile_links() {
     link_begin_.assign(particle_count_ + 1, 0);
     for (const Bond& bond : bonds_) {
@@ -129,7 +130,7 @@ void SpringNetwork::compile_links() {
     }
 }
 
-// Nothing is bound if there are no springs.
+// Without springs, bind() need not be called, so the number of particles may be unknown.
 void SpringNetwork::require_entries(std::span<const Vec3> values) const {
     if (!empty()) require_same_length(values.size(), particle_count_, "positions and velocities of springs' particles");
 }
@@ -189,7 +190,8 @@ std::size_t SpringNetwork::break_overstretched(std::span<const Vec3> position) {
 
 namespace {
 
-/// Largest sums of stiffness and damping over mass of one particle.
+/// Largest values over all particles of the summed stiffness, and of the summed damping, of a particle's springs
+/// divided by its mass.
 struct Rates {
     double stiffness = 0.0;  // in 1/s^2
     double damping = 0.0;    // in 1/s
@@ -213,7 +215,8 @@ Rates largest_rates(std::span<const Spring> springs, const std::vector<Particle>
     return largest;
 }
 
-/// Returns the bound for forward_euler: every spring's own damper must remove the energy that a step adds.
+/// Returns the longest step for forward_euler, in s. The damper of every spring must remove the energy that a step adds
+/// to the spring.
 double damper_bound(std::span<const Spring> springs) {
     double bound = std::numeric_limits<double>::infinity();
     for (const Spring& spring : springs) {

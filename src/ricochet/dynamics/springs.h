@@ -1,5 +1,6 @@
 /// \file
-/// Springs between particles: their network, its forces, its breaking, and makers of ropes and cloth.
+/// Springs between particles: the network of springs, its forces, its breaking, and functions that make ropes and
+/// cloth.
 #pragma once
 
 #include <array>
@@ -22,36 +23,37 @@ namespace ricochet {
 struct Spring {
     std::uint64_t first = 0;   ///< particle id
     std::uint64_t second = 0;  ///< particle id, different from the first
-    double rest_length = 0.0;  ///< in m, >= 0
-    double stiffness = 0.0;    ///< in N/m, >= 0
-    double damping = 0.0;      ///< along the spring, in N s/m, >= 0
-    /// Stretch, relative to the rest length, above which the spring breaks permanently: > 0; infinite if it never
-    /// breaks. A spring without a rest length has no relative stretch and cannot break.
+    double rest_length = 0.0;  ///< rest length, in m, >= 0
+    double stiffness = 0.0;    ///< spring stiffness, in N/m, >= 0
+    double damping = 0.0;      ///< damping constant along the spring, in N s/m, >= 0
+    /// Stretch, relative to the rest length, above which the spring breaks permanently. > 0; infinite if the spring
+    /// never breaks. A spring with the rest length 0 has no relative stretch and cannot break.
     double breaking_stretch = std::numeric_limits<double>::infinity();
-    /// True if the spring crosses an edge of cloth. It exerts a force like the others but is not shown as a thread.
+    /// True if the spring connects two vertices across an edge of cloth. Its force is the same as that of other
+    /// springs, but it is not shown as a thread.
     bool resists_bending = false;
 };
 
-/// Returns the force on the first end of a spring, in N: (k (l - l0) + c l') along the unit vector towards the second
-/// end. l is the distance of the ends and l' its rate of change. If the ends coincide, the spring has no direction and
-/// the force is zero. The force on the second end is exactly the opposite. Source: A. Witkin, D. Baraff, M. Kass,
-/// "Physically Based Modeling", SIGGRAPH 2001 course notes, "Particle System Dynamics", damped spring.
+/// Returns the force on the first end of a spring, in N: k (l - l0) + c l' in the direction of the second end. l is the
+/// distance of the ends, and l' is its rate of change. If the ends coincide, the spring has no direction and the force
+/// is zero. The force on the second end is exactly the opposite. Source: A. Witkin, D. Baraff, M. Kass, "Physically
+/// Based Modeling", SIGGRAPH 2001 course notes, "Particle System Dynamics", damped spring.
 [[nodiscard]] Vec3 spring_force(const Spring& spring, const Vec3& x_first, const Vec3& v_first, const Vec3& x_second,
                                 const Vec3& v_second);
 
-/// Springs over particles that are identified by their ids. `bind` sets the order of the particles. Lists of positions
-/// and velocities then follow that order, with one entry per particle. Queries have no side effects and are
-/// thread-safe. Indices past the end and lists of another length cause an InputError.
+/// Springs between particles that are identified by their ids. `bind` sets the order of the particles. Lists of
+/// positions and velocities must then be in this order, with one entry per particle. Queries have no side effects and
+/// are thread-safe. Functions throw InputError for an index past the end and for a list of the wrong length.
 class SpringNetwork {
 public:
     SpringNetwork() = default;
-    /// Creates the network with all springs intact; call bind before computing forces. Throws InputError, naming the
-    /// spring by its index, for values out of range and for a spring from a particle to itself.
+    /// Creates the network with all springs intact. Call bind before computing forces. Throws InputError for values out
+    /// of range and for a spring from a particle to itself. The message contains the index of the spring.
     explicit SpringNetwork(std::vector<Spring> springs);
 
     /// Returns true if the network was created without springs.
     [[nodiscard]] bool empty() const { return springs_.empty(); }
-    /// Returns all springs, broken and lost ones included, in their order.
+    /// Returns all springs in their order, including broken and lost springs.
     [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }
     /// Returns true if spring number `spring` has neither broken nor lost an end.
     [[nodiscard]] bool is_intact(std::size_t spring) const {
@@ -59,12 +61,12 @@ public:
         return states_[spring] == State::intact;
     }
 
-    /// Compiles the intact springs for particles in this order: entry i has the id ids[i]. Call it whenever particles
-    /// were added, removed or reordered. Springs with a missing end are removed permanently and counted as lost. Throws
-    /// InputError for a duplicate id.
+    /// Prepares the intact springs for particles in a given order: particle i has the id ids[i]. Call this function
+    /// whenever particles were added, removed or reordered. Springs with a missing end are removed permanently and
+    /// counted as lost. Throws InputError for a duplicate id.
     void bind(std::span<const std::uint64_t> ids);
 
-    /// An intact spring and its ends, as indices in bind's order: `a` is the first end, `b` the second.
+    /// An intact spring and the indices of its ends in the order of bind(). `a` is the first end, `b` the second.
     struct Bond {
         std::uint32_t spring;
         std::uint32_t a;
@@ -76,14 +78,14 @@ public:
     /// A spring as seen from one of its ends.
     struct Link {
         std::uint32_t spring;
-        std::uint32_t other;  ///< the other end, an index in bind's order
+        std::uint32_t other;  ///< index of the other end in the order of bind()
     };
     /// Returns the intact springs of particle i, in the order of their numbers.
     [[nodiscard]] std::span<const Link> links(std::uint32_t i) const {
         require_index(i, particle_count_, "particle of a spring");
         return {links_.data() + link_begin_[i], link_begin_[i + 1] - link_begin_[i]};
     }
-    /// Returns the particles with at least one intact spring, as ascending indices in bind's order.
+    /// Returns the particles with at least one intact spring, as ascending indices in the order of bind().
     [[nodiscard]] const std::vector<std::uint32_t>& coupled() const { return coupled_; }
 
     /// Returns the sum of the spring forces on particle i, in N. Springs are added in the order of their numbers, so
@@ -92,10 +94,12 @@ public:
     /// Returns the energy stored in the intact springs, in J: the sum of k/2 (l - l0)^2. Dampers store no energy.
     [[nodiscard]] double potential_energy(std::span<const Vec3> position) const;
 
-    /// Breaks the springs that are longer than (1 + breaking_stretch) * rest_length, permanently. Returns their number.
+    /// Permanently breaks all springs that are longer than (1 + breaking_stretch) * rest_length. Returns the number of
+    /// springs that broke.
     std::size_t break_overstretched(std::span<const Vec3> position);
 
-    /// Saves or restores the sets of broken and lost springs. a: the archive of a simulation state. Call bind after it.
+    /// Saves or restores the sets of broken and lost springs. a: archive of a simulation state. Call bind after
+    /// restoring.
     template <class Archive>
     void archive(Archive& a) {
         a(states_, springs_.size());
@@ -106,7 +110,7 @@ public:
 
     /// Returns the number of springs that have broken so far.
     [[nodiscard]] std::size_t broken() const { return broken_; }
-    /// Returns the number of springs removed so far because a particle at an end was gone.
+    /// Returns the number of springs removed so far because the particle at one end no longer existed.
     [[nodiscard]] std::size_t lost() const { return lost_; }
 
 private:
@@ -117,95 +121,103 @@ private:
     void require_entries(std::span<const Vec3> values) const;
 
     std::vector<Spring> springs_;
-    std::vector<State> states_;  // per spring
+    std::vector<State> states_;  // state of each spring
     std::vector<Bond> bonds_;
-    std::size_t particle_count_ = 0;         // of bind
-    std::vector<std::uint32_t> link_begin_;  // per particle: the offset of its part of links_; then the end
+    std::size_t particle_count_ = 0;         // number of particles in bind()
+    std::vector<std::uint32_t> link_begin_;  // offset of each particle's range in links_; the last entry is the end
     std::vector<Link> links_;
     std::vector<std::uint32_t> coupled_;
     std::size_t broken_ = 0;
     std::size_t lost_ = 0;
 };
 
-// Makers of ropes, chains and cloth: particles and the springs between them.
+// Functions that make ropes, chains and cloth from particles and springs.
 
-/// Triangle of cloth between three particles, which exists as long as its three springs do. It is shown, but exerts no
-/// force.
+/// Triangle of cloth between three particles. The triangle exists as long as its three springs are intact. It is shown,
+/// but exerts no force.
 struct SpringFace {
     std::array<std::uint64_t, 3> corners;  ///< particle ids, in the mesh's winding
     std::array<std::uint32_t, 3> springs;  ///< numbers of the springs along its edges
 };
 
-/// Particles with springs between them. Ids are indices into `particles`; entries of `springs` refer to these ids.
+/// Particles with springs between them. Ids are indices into `particles`, and `springs` refers to particles by these
+/// ids.
 struct SpringBody {
     std::vector<Particle> particles;
     std::vector<Spring> springs;
     std::vector<SpringFace> faces;  ///< empty for ropes
 
-    /// Appends another body; its ids and spring numbers are shifted.
+    /// Appends another body. The ids and spring numbers of the appended body are shifted.
     void append(const SpringBody& body);
 };
 
-/// Rope: nodes at equal distances along it, with springs between neighbours.
+/// Settings of a rope: nodes at equal distances along the rope, with springs between neighbours.
 struct RopeSettings {
     Vec3 from;              ///< first node, in m
     Vec3 to;                ///< last node, in m, different from the first
     std::size_t nodes = 2;  ///< >= 2
-    /// Rest length, in m, > 0; default: the distance of the ends. A longer rope starts as a catenary that hangs in the
-    /// direction `sag`, a shorter one as a straight line under tension.
+    /// Rest length, in m, > 0. The default is the distance of the ends. A longer rope starts as a catenary that hangs
+    /// in the direction `sag`. A shorter rope starts as a straight line under tension.
     std::optional<double> length = {};
-    Vec3 sag{0, 0, -1};   ///< initial direction of hanging for a slack rope; any nonzero length
-    double mass = 1.0;    ///< total mass, in kg, > 0; every segment gives half of its mass to each of its nodes
-    double radius = 0.0;  ///< of every node, in m, >= 0
-    /// Stiffness: exactly one of the two members is set. `stiffness` applies to every segment, in N/m.
-    /// `axial_stiffness` is E A (modulus times cross section), in N; a segment of rest length l then has the stiffness
-    /// E A / l.
+    Vec3 sag{0, 0, -1};   ///< initial direction in which a slack rope hangs; any nonzero length
+    double mass = 1.0;    ///< total mass, in kg, > 0; half of a segment's mass is assigned to each of its nodes
+    double radius = 0.0;  ///< radius of every node, in m, >= 0
+    /// Stiffness of the segments. Exactly one of the two members must be set. `stiffness`, in N/m, applies to every
+    /// segment. `axial_stiffness` is the elastic modulus E times the cross section A, in N. A segment with the rest
+    /// length l then has the stiffness E A / l.
     std::optional<double> stiffness = {};
     std::optional<double> axial_stiffness = {};
-    double damping = 0.0;                                               ///< of every segment, in N s/m, >= 0
-    double breaking_stretch = std::numeric_limits<double>::infinity();  ///< of every segment, see Spring
-    bool pin_from = false;                                              ///< the first node never moves
-    bool pin_to = false;                                                ///< the last node never moves
+    double damping = 0.0;  ///< damping of every segment, in N s/m, >= 0
+    /// Breaking stretch of every segment, see Spring.
+    double breaking_stretch = std::numeric_limits<double>::infinity();
+    bool pin_from = false;  ///< true: the first node never moves
+    bool pin_to = false;    ///< true: the last node never moves
 };
-/// Makes a rope with its nodes in order; spring i joins nodes i and i + 1. Throws InputError for values out of range.
+/// Makes a rope. The nodes are in order, and spring i joins nodes i and i + 1. Throws InputError for values out of
+/// range.
 [[nodiscard]] SpringBody make_rope(const RopeSettings& settings);
 
-/// Cloth: a particle for every vertex of a triangle mesh, a spring along every edge.
+/// Settings of cloth: a particle for every vertex of a triangle mesh, and a spring along every edge.
 struct ClothSettings {
-    double mass_per_area = 1.0;  ///< in kg/m^2, > 0; a vertex has a third of the mass of each adjacent triangle
-    double radius = 0.0;         ///< of every particle, in m, >= 0
-    double stiffness = 0.0;      ///< of the springs along edges, in N/m, >= 0
-    double damping = 0.0;        ///< of all springs, in N s/m, >= 0
-    /// Stiffness, in N/m, >= 0, of springs across every edge between two triangles. These springs join the corners
-    /// opposite to the edge and so resist bending. With 0 none are made.
+    /// Mass per area, in kg/m^2, > 0; a vertex has a third of the mass of each adjacent triangle.
+    double mass_per_area = 1.0;
+    double radius = 0.0;     ///< radius of every particle, in m, >= 0
+    double stiffness = 0.0;  ///< stiffness of the springs along edges, in N/m, >= 0
+    double damping = 0.0;    ///< damping of all springs, in N s/m, >= 0
+    /// Stiffness, in N/m, >= 0, of the springs across edges between two triangles. Such a spring joins the two corners
+    /// opposite to the edge, and thus resists bending. If the stiffness is 0, no such springs are made.
     double bending_stiffness = 0.0;
-    double breaking_stretch = std::numeric_limits<double>::infinity();  ///< of the springs along edges, see Spring
-    std::vector<std::uint32_t> pinned = {};                             ///< vertices that never move
+    /// Breaking stretch of the springs along edges, see Spring.
+    double breaking_stretch = std::numeric_limits<double>::infinity();
+    std::vector<std::uint32_t> pinned = {};  ///< indices of vertices that never move
 };
-/// Makes a cloth at rest in the shape of the mesh. Particles are in the order of the vertices. Springs along edges come
-/// first, in the order of their ends' indices, then the springs across edges. A non-manifold edge has no bending
-/// spring. Throws InputError for values out of range, a mesh without triangles, and vertices without an adjacent
-/// triangle of nonzero area. Source of springs along and across edges for stretching and bending: X. Provot,
-/// "Deformation constraints in a mass-spring model to describe rigid cloth behavior", Graphics Interface 1995.
+/// Makes a cloth at rest in the shape of the mesh. Particles are in the order of the vertices. The springs along edges
+/// come first, in the order of the indices of their ends. The springs across edges follow. A non-manifold edge has no
+/// bending spring. Throws InputError for values out of range, a mesh without triangles, and vertices without an
+/// adjacent triangle of nonzero area. Source of the springs along edges for stretching and across edges for bending: X.
+/// Provot, "Deformation constraints in a mass-spring model to describe rigid cloth behavior", Graphics Interface 1995.
 [[nodiscard]] SpringBody make_cloth(const TriangleMesh& mesh, const ClothSettings& settings);
 
-/// Returns a flat parallelogram as a mesh for make_cloth: cells_u by cells_v cells of two triangles each. Diagonals
-/// alternate, so no direction is stiffer. Vertex (i, j) is at corner + i/cells_u u + j/cells_v v and has the index j *
-/// (cells_u + 1) + i. Throws InputError for zero cells or parallel sides.
+/// Returns a flat parallelogram as a mesh for make_cloth, with cells_u by cells_v cells of two triangles each. The
+/// diagonals of the cells alternate, so no diagonal direction is stiffer than the other. Vertex (i, j) is at corner +
+/// i/cells_u u + j/cells_v v and has the index j * (cells_u + 1) + i. Throws InputError for zero cells or parallel
+/// sides.
 [[nodiscard]] TriangleMesh sheet_mesh(const Vec3& corner, const Vec3& u, const Vec3& v, std::size_t cells_u,
                                       std::size_t cells_v);
 
-// The longest steps that explicit methods can make with springs.
+// The longest stable steps of explicit methods with springs.
 
-/// Returns a step, in s, that is short enough for every oscillation of these springs; longer steps may diverge. It is
-/// infinite without springs, and for implicit_euler and dormand_prince, which chooses its own steps. particles: the
-/// springs refer to them by index. Throws InputError for a particle that does not exist and for an unknown kind.
+/// Returns a step, in s, for which every oscillation of these springs is stable. Longer steps may diverge. The step is
+/// infinite if there are no springs. It is also infinite for implicit_euler, and for dormand_prince, which chooses its
+/// own steps. particles: the ids in `springs` are indices into this list. Throws InputError for a particle that does
+/// not exist and for an unknown kind.
 ///
-/// By Gershgorin's theorem the largest squared frequency is omega^2 = 2 max sum(k) / m, and the largest damping rate is
-/// gamma = 2 max sum(c) / m. The sums are over the springs of a particle. The stability limits of the methods are:
-/// - symplectic_euler, velocity_verlet and ballistic (which becomes velocity_verlet): h^2 omega^2 + 2 h gamma < 4.
+/// By Gershgorin's theorem, omega^2 = 2 max sum(k) / m is an upper bound of the squared frequencies, and gamma = 2 max
+/// sum(c) / m is an upper bound of the damping rates. The sums are over the springs of a particle. The stability limits
+/// of the methods are:
+/// - symplectic_euler, velocity_verlet and ballistic (replaced by velocity_verlet): h^2 omega^2 + 2 h gamma < 4.
 /// - Runge-Kutta methods: h times the largest eigenvalue must lie in their region of stability.
-/// - forward_euler: it needs dampers, h < c / k.
+/// - forward_euler: h < c / k for every spring, so every spring needs a damper.
 [[nodiscard]] double longest_stable_step(IntegratorKind kind, std::span<const Spring> springs,
                                          const std::vector<Particle>& particles);
 

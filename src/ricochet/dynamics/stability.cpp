@@ -12,14 +12,15 @@ namespace {
 
 constexpr double kAnyStep = std::numeric_limits<double>::infinity();
 
-/// Radii of discs around 0 whose left halves lie in the regions of stability. Close to the imaginary axis this holds
-/// only approximately. Mathematical constants of the methods.
+/// Radii of discs around 0. The left half of each disc lies in the region of stability of the method. Close to the
+/// imaginary axis this is only approximately true. The values are mathematical constants of the methods.
 constexpr double kReachOfMidpoint = 1.0;
 constexpr double kReachOfRk4 = 2.6;
 
-/// Step of the velocity differences, relative to the speed or to kSlow. The step is wide, so that the jump of 0.4 % in
-/// Schiller and Naumann's coefficient does not give a steep slope. The differences of linear and quadratic drags are
-/// exact. Local: steps of numerical derivatives for warnings.
+/// Increment of the velocity in finite differences, relative to the larger of the speed and kSlow. The increment is
+/// large, so that the jump of 0.4 % in Schiller and Naumann's coefficient does not cause a steep slope. For linear and
+/// quadratic drags, central differences are exact with any increment. Local: increments of numerical derivatives, which
+/// are used only for warnings.
 constexpr double kDifference = 1e-2;
 constexpr double kSlow = 1e-3;  ///< in m/s
 
@@ -45,7 +46,7 @@ double longest_stable_step(IntegratorKind kind, const OscillationRates& rates) {
     const double gamma = rates.gamma;
     const double root = std::sqrt(gamma * gamma + 4.0 * rates.omega_squared);
     if (!(root > 0.0)) return kAnyStep;
-    const double fastest = 0.5 * (gamma + root);  // upper bound of all eigenvalues
+    const double fastest = 0.5 * (gamma + root);  // upper bound of the magnitudes of all eigenvalues
     switch (kind) {
         case IntegratorKind::implicit_euler:
         case IntegratorKind::dormand_prince:
@@ -62,7 +63,8 @@ double longest_stable_step(IntegratorKind kind, const OscillationRates& rates) {
 }
 
 double energy_factor(IntegratorKind kind, double omega_squared, double gamma, double h) {
-    // The eigenvalue that is amplified more counts. Both are conjugate, or real and negative.
+    // The result is for the eigenvalue with the larger amplification. The two eigenvalues are conjugate, or real and
+    // negative.
     const std::complex<double> root = std::sqrt(std::complex<double>(0.25 * gamma * gamma - omega_squared));
     double most = 0.0;
     for (const double sign : {1.0, -1.0}) {

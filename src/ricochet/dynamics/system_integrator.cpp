@@ -21,7 +21,7 @@ Vectors along(const Vectors& a, double h, const Vectors& b) {
 /// Accelerations of all members in a state, in m/s^2.
 struct Accelerations {
     Vectors all;
-    Vectors mutual;  // part of `all` by the forces between members; empty without such forces
+    Vectors mutual;  // part of `all` that forces between members cause; empty without such forces
 };
 
 Accelerations accelerations(const ParticleSystem& system, double time, const Vectors& x, const Vectors& v) {
@@ -30,7 +30,7 @@ Accelerations accelerations(const ParticleSystem& system, double time, const Vec
     return result;
 }
 
-/// Returns the step of a method that ends in these states.
+/// Returns a step of h seconds with the given end state and start accelerations.
 SystemStep step_to(Vectors positions, Vectors velocities, Accelerations start, double h) {
     SystemStep step{std::move(positions), std::move(velocities), std::move(start.all), h, h};
     step.mutual_start = std::move(start.mutual);
@@ -95,7 +95,7 @@ SystemStep rk4_step(const ParticleSystem& system, double h) {
     return step;
 }
 
-/// A step of dormand_prince, with its largest error relative to the tolerance.
+/// A step of dormand_prince, with the largest error of a member relative to the tolerance.
 struct TriedStep {
     SystemStep step;
     double error = 0.0;
@@ -147,7 +147,7 @@ SystemStep adaptive_step(const Integrator& integrator, const ParticleSystem& sys
     for (;; h *= 0.5) {
         TriedStep tried = dormand_prince_system(system, h, integrator.tolerance);
         if (tried.error > 1.0 && 0.5 * h >= shortest) continue;
-        const bool ended_here = h >= duration;  // the step ended here, not the method
+        const bool ended_here = h >= duration;  // the duration limited the step, not the error
         tried.step.next_duration = ended_here ? first_try : (tried.error < kErrorToDouble ? 2.0 * h : h);
         tried.step.solved = !(tried.error > 1.0);
         return std::move(tried.step);
@@ -168,7 +168,7 @@ double SupportConstraints::friction_energy_at(const Vec3& mean) const {
     return slip <= yield ? 0.5 * grip / yield * slip * slip : grip * (slip - 0.5 * yield);
 }
 
-// In the proportional range, friction removes grip / yield of the remaining slip.
+// In the proportional range, the velocity change by friction is grip / yield times the slip that remains.
 Vec3 SupportConstraints::mean_of(const Vec3& free) const {
     if (count == 0) return free;
     Vec3 along = across(free);

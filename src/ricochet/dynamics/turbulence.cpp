@@ -14,22 +14,23 @@
 namespace ricochet {
 namespace {
 
-constexpr std::uint32_t kTable = 256;  // entries; the lattice repeats after as many points
-// Streams of the random numbers; emitters use streams from 0 on.
+constexpr std::uint32_t kTable = 256;  // number of entries, and period of the lattice in points
+// Stream keys of random numbers. They differ from the keys of emitters, which start at 0.
 constexpr std::uint32_t kGradientStream = 0xF1040001U;
 constexpr std::uint32_t kOrderStream = 0xF1040002U;
 constexpr std::uint32_t kOffsetStream = 0xF1040003U;
-// Mean square of the curl of three noises with unit gradients, the fade below and lattice spacing 1. It is twice the
-// mean square of one noise's gradient, whose integrals over a cell are rational. A mathematical constant.
+// Mean square of the curl of three noises with unit gradients, the function fade() and lattice spacing 1. It is twice
+// the mean square of the gradient of one noise. The value is rational, because the integrals over a cell are rational.
+// A mathematical constant.
 constexpr double kMeanSquareCurl = 238536280.0 / 160243083.0;
 
-// Fade with zero first and second derivatives at both ends (Perlin 2002), and its derivative.
+// Fade function, whose first and second derivatives are zero at both ends (Perlin 2002), and its derivative.
 double fade(double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); }
 double fade_slope(double t) { return 30.0 * t * t * (t - 1.0) * (t - 1.0); }
 
 struct LatticeCell {
-    std::uint32_t point;  // modulo kTable
-    double offset;        // in [0, 1)
+    std::uint32_t point;  // index of the lattice point, modulo kTable
+    double offset;        // offset from the lattice point, in [0, 1)
 };
 
 LatticeCell place_of(double x) {
@@ -39,8 +40,8 @@ LatticeCell place_of(double x) {
     return {static_cast<std::uint32_t>(wrapped), x - below};
 }
 
-// Curl of three gradient noises on a lattice of spacing 1. Around a lattice point each noise is a linear function times
-// a weight, so curl(w p) = w curl p + grad w x p.
+// Curl of three gradient noises on a lattice of spacing 1. Each lattice point adds a weight w times a linear function p
+// to every noise, so its curl is curl(w p) = w curl p + grad w x p.
 class CurlNoise {
 public:
     explicit CurlNoise(std::uint64_t seed) {
@@ -58,7 +59,7 @@ public:
         }
     }
 
-    // slice: index of one of many independent noises.
+    // Returns the curl at a position. slice: index of one of many independent noises.
     [[nodiscard]] Vec3 curl(const Vec3& position, std::uint32_t slice) const {
         const LatticeCell at[3] = {place_of(position.x), place_of(position.y), place_of(position.z)};
         double weight[3][2];
@@ -71,8 +72,8 @@ public:
         }
         Vec3 sum;
         for (std::uint32_t i = 0; i < 2; ++i) {
-            // The slice is hashed first. If slice and position were added, the next slice would be this one shifted by
-            // a point.
+            // The slice is hashed separately. If the slice were added to the position, the next slice would be the same
+            // noise, shifted by one lattice point.
             const std::uint32_t row = hashed(hashed(0, slice), at[0].point + i);
             for (std::uint32_t j = 0; j < 2; ++j) {
                 const std::uint32_t column = hashed(row, at[1].point + j);
@@ -92,8 +93,8 @@ public:
 
 private:
     struct Gradients {
-        Vec3 first, second, third;  // of the three noises
-        Vec3 curl;                  // of the linear functions with these gradients
+        Vec3 first, second, third;  // gradients of the three noises
+        Vec3 curl;                  // curl of the linear functions with these gradients
     };
     [[nodiscard]] std::uint32_t hashed(std::uint32_t before, std::uint32_t point) const {
         return order_[(before + point) % kTable];
@@ -107,11 +108,11 @@ class Turbulence final : public FlowField {
 public:
     explicit Turbulence(const TurbulenceSettings& settings) : noise_(settings.seed), frozen_(settings.rate == 0.0) {
         double squares = 0.0;
-        double factor = 1.0;  // speed of the octave relative to that of the first
+        double factor = 1.0;  // speed of the octave relative to the first octave
         double finer = 1.0;
         for (std::uint32_t k = 0; k < settings.octaves; ++k) {
             RandomSequence random(settings.seed, kOffsetStream, k);
-            Vec3 offset;  // drawn one by one, z first: compilers evaluate a call's arguments in different orders
+            Vec3 offset;  // drawn one by one, z first, because compilers differ in the evaluation order of arguments
             for (const int axis : {2, 1, 0}) offset[axis] = random.uniform() * kTable;
             octaves_.push_back({finer / settings.length, factor, settings.rate * finer * factor, offset,
                                 static_cast<std::uint32_t>(random.uniform() * kTable)});
@@ -132,9 +133,9 @@ public:
 private:
     struct Octave {
         double frequency;  // in 1/m
-        double speed;      // in m/s for a curl of 1
+        double speed;      // speed for a curl of 1, in m/s
         double rate;       // in 1/s
-        Vec3 offset;       // of the lattice, so that the lattices of the octaves do not coincide
+        Vec3 offset;       // offset of the lattice, so that the lattices of the octaves do not coincide
         std::uint32_t first_slice;
     };
 

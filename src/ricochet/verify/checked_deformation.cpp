@@ -20,7 +20,7 @@ void require(bool condition, const char* what) {
     if (!condition) throw InputError(what);
 }
 
-/// Returns, for each vertex, the smallest vertex that has the same positions at all keys.
+/// Returns, for each vertex, the lowest index of a vertex that has the same positions at all keys.
 std::vector<std::uint32_t> joined_vertices(const std::vector<std::vector<Vec3>>& keys) {
     std::vector<std::uint32_t> order(keys.front().size());
     std::iota(order.begin(), order.end(), 0U);
@@ -40,8 +40,8 @@ std::vector<std::uint32_t> joined_vertices(const std::vector<std::vector<Vec3>>&
     return joined;
 }
 
-/// Returns true if every edge belongs to an even number of triangle sides. Vertices that have equal positions at all
-/// keys count as one.
+/// Returns true if every edge belongs to an even number of triangle sides. Vertices with equal positions at all keys
+/// are treated as one vertex.
 bool encloses(const VerifiedDeformation& surface) {
     const std::vector<std::uint32_t> joined = joined_vertices(surface.vertices);
     std::map<std::pair<std::uint32_t, std::uint32_t>, bool> is_odd;
@@ -76,7 +76,7 @@ CheckedDeformation::CheckedDeformation(std::uint32_t collider, VerifiedDeformati
     }
     require(!surface_.triangles.empty(), "verified mesh that deforms: expected triangles");
     is_closed_ = encloses(surface_);
-    // A triangle that names a vertex twice never has an area.
+    // Triangles that contain a vertex twice are skipped, because they never have an area.
     for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t) {
         if (std::set(surface_.triangles[t].begin(), surface_.triangles[t].end()).size() == 3) order_.push_back(t);
     }
@@ -85,7 +85,7 @@ CheckedDeformation::CheckedDeformation(std::uint32_t collider, VerifiedDeformati
     for (std::size_t key = 0; key < surface_.times.size(); ++key) fit(key);
 }
 
-/// Builds the tree. Splits the triangles in halves by their positions at the first key.
+/// Builds the tree recursively. Each node splits its triangles in two halves by their positions at the first key.
 void CheckedDeformation::build(std::uint32_t begin, std::uint32_t end) {
     const std::size_t index = nodes_.size();
     nodes_.push_back({begin, end - begin});
@@ -127,8 +127,8 @@ void CheckedDeformation::fit(std::size_t key) {
     }
 }
 
-/// Returns the keys around a time. If keys repeat, a period begins with its first key, which replaces the last key of
-/// the period before.
+/// Returns the moment at a time, between its two nearest keys. If the keys repeat, each period begins with the first
+/// key. This key replaces the last key of the preceding period.
 CheckedDeformation::Moment CheckedDeformation::moment_at(double time) const {
     const std::vector<double>& times = surface_.times;
     const std::size_t last = times.size() - 1;
@@ -142,7 +142,7 @@ CheckedDeformation::Moment CheckedDeformation::moment_at(double time) const {
         while (begin_of(0, round) > time) round -= 1.0;
         while (begin_of(0, round + 1.0) <= time) round += 1.0;
     }
-    // Uses bisection, because colliders that are scaled in time have thousands of keys.
+    // The key is found by bisection, because colliders with a scaled time can have thousands of keys.
     std::size_t key = 0;
     for (std::size_t after = last; after - key > 1;) {
         const std::size_t middle = key + (after - key) / 2;
@@ -170,7 +170,7 @@ Corners CheckedDeformation::corners_at(std::uint32_t triangle, const Moment& mom
     return {position(a, moment), position(b, moment), position(c, moment)};
 }
 
-/// Returns the moments at the ends of a span and at the keys within it.
+/// Returns the moments at both ends of a time span and at the keys within the span.
 std::vector<CheckedDeformation::Moment> CheckedDeformation::moments_of(const Span& span) const {
     std::vector<Moment> moments{moment_at(span.begin)};
     while (moments.back().next_key < span.end) moments.push_back(moment_at(moments.back().next_key));
@@ -178,7 +178,8 @@ std::vector<CheckedDeformation::Moment> CheckedDeformation::moments_of(const Spa
     return moments;
 }
 
-/// Returns the box of a node at a moment. Interpolated box faces enclose the interpolated vertices.
+/// Returns the box of a node at a moment. The box is interpolated between the boxes at both keys, and therefore
+/// encloses the interpolated vertices.
 Box3 CheckedDeformation::box_at(std::size_t node, const Moment& moment) const {
     const Box3& a = boxes_[moment.from * nodes_.size() + node];
     const Box3& b = boxes_[moment.to * nodes_.size() + node];

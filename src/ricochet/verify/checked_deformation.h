@@ -1,5 +1,5 @@
 /// \file
-/// Private to the verifier: a deforming mesh, in world coordinates.
+/// A deforming mesh in world coordinates. Private to the verifier.
 #pragma once
 
 #include <array>
@@ -20,24 +20,25 @@
 
 namespace ricochet::verify {
 
-/// A deforming mesh that the verifier checks. Between two keys a vertex is at fl(a + fl(part fl(b - a))), the
-/// definition of MeshMoment. This class evaluates it with its own code. Safe from any number of threads.
+/// A deforming mesh that the verifier checks. Between the keys a and b, the position of a vertex is defined as fl(a +
+/// fl(part fl(b - a))), as in MeshMoment. fl() is rounding to double. This class evaluates the definition with its own
+/// code. It is thread-safe.
 class CheckedDeformation {
 public:
-    /// Throws InputError for indices of missing corners and for invalid motions.
+    /// Throws InputError for invalid motions and for corner indices without a vertex.
     CheckedDeformation(std::uint32_t collider, VerifiedDeformation surface);
 
     [[nodiscard]] std::uint32_t collider() const { return collider_; }
-    /// Returns true if the mesh encloses a volume. Only such meshes have sides.
+    /// Returns true if the mesh encloses a volume. side() is defined only for such meshes.
     [[nodiscard]] bool is_closed() const { return is_closed_; }
     [[nodiscard]] Side side(const Vec3& p, double time) const;
     [[nodiscard]] bool is_on_surface(const Vec3& p, double time) const;
-    /// Appends the crossings of a segment that a particle has travelled. The segment must be free of all triangles in
-    /// space and time. It must also end at each key of the mesh, unless it is far from the mesh. A late segment
-    /// (`is_late`) belongs to a particle that was stalled. It may extend over keys. The test then lets the corners of
-    /// triangles move in straight lines too.
+    /// Appends the crossings of a segment that a particle has travelled. A triangle is crossed unless the segment is
+    /// proven to be apart from it in space and time. Near the mesh, a segment must also end at each key of the mesh;
+    /// otherwise a crossing is reported. A late segment (`is_late`) belongs to a particle that was stalled, and may
+    /// extend over keys. The test then assumes that corners move in straight lines between the ends of the segment.
     void find_crossings(const Segment& segment, bool is_late, std::vector<CheckedFrame::Crossing>& crossings) const;
-    /// Calls found(collider, triangle) for every triangle that a sphere about a point overlaps; see CheckedFrame.
+    /// Calls found(collider, triangle) for every triangle that overlaps a sphere about the point p, see CheckedFrame.
     template <class Found>
     void visit_overlapped(const Vec3& p, double time, double radius, double largest, const Found& found) const {
         const double least = radius - sphere_tolerance(radius, largest);
@@ -52,20 +53,20 @@ public:
     }
 
 private:
-    /// A time between two keys.
+    /// A time, expressed by the two keys around it.
     struct Moment {
-        std::size_t from = 0;  ///< indices of keys
+        std::size_t from = 0;  ///< index of the key before the time
         std::size_t to = 0;
         double part = 0.0;
-        double next_key = 0.0;  ///< in s; infinite after the last key
+        double next_key = 0.0;  ///< time of the next key, in s; infinite after the last key
     };
     struct Span {
         double begin = 0.0;
         double end = 0.0;
     };
     struct Node {
-        std::uint32_t first = 0;  ///< a leaf's first triangle in order_; otherwise the second child
-        std::uint32_t count = 0;  ///< triangles of a leaf; 0 for other nodes
+        std::uint32_t first = 0;  ///< first triangle of a leaf in order_; second child of another node
+        std::uint32_t count = 0;  ///< number of triangles of a leaf; 0 for other nodes
     };
     struct Oracles {
         std::mutex mutex;
@@ -82,7 +83,7 @@ private:
     void build(std::uint32_t begin, std::uint32_t end);
     void fit(std::size_t key);
 
-    /// Calls visit(triangle) for all triangles that enter a box in a span of time, and possibly for more.
+    /// Calls visit(triangle) for all triangles that touch a box within a time span, and possibly for further triangles.
     template <class Visit>
     void visit_near(const Box3& box, const Span& span, const Visit& visit) const {
         const std::vector<Moment> moments = moments_of(span);
@@ -108,8 +109,8 @@ private:
     bool is_closed_ = false;
     double largest_ = 0.0;  ///< largest coordinate, in m
     std::vector<std::uint32_t> order_;
-    std::vector<Node> nodes_;  ///< in depth-first order
-    std::vector<Box3> boxes_;  ///< one per node and key
+    std::vector<Node> nodes_;  ///< nodes in depth-first order
+    std::vector<Box3> boxes_;  ///< one box per node and key
     std::unique_ptr<Oracles> oracles_ = std::make_unique<Oracles>();
 };
 

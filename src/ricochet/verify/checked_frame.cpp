@@ -29,8 +29,7 @@ void require_good(const TriangleMesh& mesh) {
 
 Side side_of(int sign) { return sign > 0 ? Side::outside : (sign < 0 ? Side::inside : Side::on_surface); }
 
-/// Returns the local position of a stored position in a moving frame, by the definition of MovingPose::image(): R^T (x
-/// - t).
+/// Returns the local position R^T (x - t) of a stored position x in a moving frame, as MovingPose::image() defines it.
 Vec3 local_position_by(const AffineMap& map, const Vec3& world) {
     const Vec3 d = world - map.translation;
     const auto sum = [&](double x, double y, double z) { return d.x * x + d.y * y + d.z * z; };
@@ -109,9 +108,9 @@ void CheckedFrame::find_crossings(const Segment& segment, bool starts_on_surface
     if (frame_ && crossings.size() > first && stays_away(segment)) crossings.resize(first);
 }
 
-/// Returns true if a segment is far from a turning body. The chord in the body's frame is then no evidence of a
-/// crossing. The test divides the time of the segment. In each part, a box that encloses the moving body must not touch
-/// the segment's box.
+/// Returns true if a segment does not come near a turning body. In this case, a chord that intersects the body in the
+/// body's frame is no evidence of a crossing. The test splits the time of the segment into parts. In each part, a box
+/// that encloses the moving body must not touch the box of the segment.
 bool CheckedFrame::stays_away(const Segment& segment) const {
     constexpr int kMostParts = 256;
     if (!planes_.empty() || box_.empty()) return false;

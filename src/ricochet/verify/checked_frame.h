@@ -1,5 +1,5 @@
 /// \file
-/// Private to the verifier: the colliders of one frame, at rest or moving, in its coordinates.
+/// The colliders of one frame, at rest or moving, in the frame's coordinates. Private to the verifier.
 #pragma once
 
 #include <algorithm>
@@ -19,23 +19,24 @@
 
 namespace ricochet::verify {
 
-/// The colliders of one frame. Immutable after build(); safe from any number of threads. Points are in world
-/// coordinates, with times in s.
+/// The colliders of one frame. The object is immutable after build(), and then thread-safe. All functions take points
+/// in world coordinates and times in s.
 class CheckedFrame {
 public:
-    /// For colliders at rest `frames` is null and `frame` is empty.
+    /// frames, frame: null and empty for colliders at rest.
     CheckedFrame(std::shared_ptr<const FrameTree> frames, std::optional<std::size_t> frame)
         : frames_(std::move(frames)), frame_(frame) {}
 
-    /// Adds a collider. Throws InputError for invalid surfaces. build() must be called after the last one.
+    /// Adds a collider. Throws InputError for an invalid surface. build() must be called after the last collider is
+    /// added.
     void add(std::uint32_t collider, const VerifiedSurface& surface);
     void build();
 
     [[nodiscard]] const std::optional<std::size_t>& frame() const { return frame_; }
     [[nodiscard]] std::size_t side_count() const { return planes_.size() + shapes_.size() + bodies_.size(); }
-    /// Appends the sides that a point is on, for planes, shapes and closed meshes.
+    /// Appends the side of a point for each plane, shape and closed mesh.
     void append_sides(const Vec3& p, double time, std::vector<Side>& sides) const;
-    /// Calls found(k, collider) for each of those surfaces, in the same order.
+    /// Calls found(k, collider) for each surface for which append_sides() appends a side, in the same order.
     template <class Found>
     void visit_sides(const Found& found) const {
         std::size_t k = 0;
@@ -45,20 +46,20 @@ public:
     }
     [[nodiscard]] bool is_on_surface(const Vec3& p, double time) const;
 
-    /// A crossing of a travelled segment.
+    /// A point at which a travelled segment crosses a surface.
     struct Crossing {
-        Vec3 position;  ///< in m, in the world
+        Vec3 position;  ///< position in the world, in m
         std::uint32_t collider;
         std::optional<std::uint32_t> triangle;
     };
-    /// Appends the crossings of a segment. If a particle is on surfaces at its start, the segment may leave them to
-    /// either side.
+    /// Appends the crossings of a segment. starts_on_surface: true if the particle is on surfaces at the start of the
+    /// segment. The segment may then leave these surfaces to either side.
     void find_crossings(const Segment& segment, bool starts_on_surface, std::vector<Crossing>& crossings) const;
 
-    /// Calls found(collider, triangle or nothing) for every surface that a sphere about a point overlaps. Overlaps of
-    /// up to 1e-12 of its radius and coordinates are ignored. The order is unspecified. `largest` is the largest of its
-    /// world coordinates along its path to the point, and `way` is the length of that path, in m. The largest
-    /// coordinate in a frame exceeds the last one by at most that length.
+    /// Calls found(collider, triangle or nothing) for every surface that overlaps a sphere about a point, in any order.
+    /// Overlaps of up to 1e-12 of the sphere's radius and coordinates are ignored. largest: largest world coordinate of
+    /// the sphere's centre on its path to the point, in m. way: length of this path, in m. The coordinates in the frame
+    /// exceed those at the end of the path by at most this length.
     template <class Found>
     void visit_overlapped(const Vec3& world, double time, double radius, double largest, double way,
                           const Found& found) const {
@@ -93,10 +94,10 @@ private:
     std::optional<std::size_t> frame_;
     std::vector<OfCollider<VerifiedPlane>> planes_;
     std::vector<OfCollider<CheckedShape>> shapes_;
-    std::vector<OfCollider<ParityOracle>> bodies_;  ///< closed meshes
+    std::vector<OfCollider<ParityOracle>> bodies_;  ///< inside tests of closed meshes
     std::vector<NamedTriangle> to_build_;
     TriangleTree triangles_;
-    Box3 box_;  ///< box of triangles and shapes
+    Box3 box_;  ///< bounding box of triangles and shapes
 };
 
 }  // namespace ricochet::verify

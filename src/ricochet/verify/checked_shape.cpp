@@ -13,24 +13,25 @@ namespace {
 
 using Digits = boost::multiprecision::cpp_bin_float_50;
 
-/// Relative difference of half axes up to which they count as equal. A rotation rounds the columns of a uniform scale
-/// by about 2^-52. Local: rounding of an input value.
+/// Largest relative difference of half axes that are treated as equal. If a map is a rotation with a uniform scale,
+/// rounding changes the lengths of its columns by about 2^-52. Local: a tolerance for the rounding of input values.
 constexpr double kEqualAxes = 0x1p-49;
 
-/// Relative error of doubles: of a local coordinate, relative to the distance from the centre, and of a sum, relative
-/// to its terms. It covers some 6 roundings of 2^-53. Local: an error bound of this arithmetic.
+/// Error bound of doubles: of a local coordinate, relative to the distance from the centre, and of a sum, relative to
+/// its terms. The bound covers about 6 roundings of 2^-53. Local: an error bound of the formulas in this file.
 constexpr double kRoughError = 0x1p-49;
 
-/// Margin for rounding around the box of a shape, relative to its size and position. Local: an error bound of this
-/// arithmetic.
+/// Margin for rounding around the box of a shape, relative to the size and position of the box. Local: an error bound
+/// of the formulas in this file.
 constexpr double kBoxSlack = 1e-12;
 
-/// Bisection steps for the multiplier. More steps would not change a double.
+/// Number of bisection steps for the Lagrange multiplier. Further steps would not change a double.
 constexpr int kHalvings = 120;
 
-/// Value (1 is the size of the shape) below which a point counts as on the surface. It is far above the errors of fifty
-/// digits and far below the 2^-96 that the sweep keeps between a particle and a surface. Larger than 2^-96: free
-/// segments would be reported. Smaller than 1e-45: rounding would decide.
+/// Largest magnitude of a point's value, relative to the size of the shape, at which the point is on the surface. It is
+/// far above the errors of numbers with fifty digits. It is far below 2^-96, the distance that the sweep keeps between
+/// a particle and a surface. With more than 2^-96, free segments would be reported. With less than 1e-45, rounding
+/// would decide.
 const Digits kOnSurface("1e-36");
 
 template <class Real>
@@ -73,11 +74,11 @@ struct CheckedShape::Impl {
     [[nodiscard]] Digits square_distance(const VectorOf<Digits>& y) const;
 
     Vec3 center;
-    std::size_t round_axes;           ///< 3, or 2 for a cylinder with caps
-    VectorOf<double> half{};          ///< half axes, in m
+    std::size_t round_axes;           ///< number of round axes: 3, or 2 for a cylinder with caps
+    VectorOf<double> half{};          ///< lengths of the half axes, in m
     VectorOf<VectorOf<Digits>> axes;  ///< unit vectors
     VectorOf<Vec3> rough_axes;
-    double smallest = 0.0;  ///< smallest round half axis
+    double smallest = 0.0;  ///< smallest half axis of the round axes, in m
     Box3 box;
 };
 
@@ -121,14 +122,14 @@ VectorOf<Digits> CheckedShape::Impl::local(const Vec3& p) const {
     return {product(axes[0], w), product(axes[1], w), product(axes[2], w)};
 }
 
-/// Returns a value that is zero on the round part of the surface and negative inside.
+/// Returns a value that is zero on the round part of the surface, negative inside and positive outside.
 Digits CheckedShape::Impl::round_value(const VectorOf<Digits>& y) const {
     Digits value = -1;
     for (std::size_t i = 0; i < round_axes; ++i) value += square(Digits(y[i] / half[i]));
     return value;
 }
 
-/// Returns the side computed in doubles, or 0 if they leave doubt.
+/// Returns the side computed in doubles, or 0 if the error bound leaves doubt.
 int CheckedShape::Impl::rough_side(const Vec3& p) const {
     const VectorOf<double> y = rough_local(p);
     const double error = kRoughError * length(p - center);
@@ -159,8 +160,8 @@ bool CheckedShape::Impl::box_misses(const Vec3& p, const Vec3& q) const {
            lower.z > box.upper.z || upper.z < box.lower.z;
 }
 
-/// Returns true if doubles prove that the whole segment is outside. The value along the segment is a parabola of t. The
-/// error bound of its terms covers a few roundings and the errors of the coordinates.
+/// Returns true if doubles prove that the whole segment is outside. Along the segment, the value is a quadratic
+/// polynomial of t. The error bound of its terms covers a few roundings and the errors of the coordinates.
 bool CheckedShape::Impl::is_roughly_apart(const Vec3& p, const Vec3& q) const {
     const VectorOf<double> from = rough_local(p);
     const VectorOf<double> to = rough_local(q);
@@ -185,8 +186,8 @@ bool CheckedShape::Impl::is_roughly_apart(const Vec3& p, const Vec3& q) const {
     return value + lowest * (2.0 * slope + lowest * curvature) > 8.0 * bound;
 }
 
-/// Returns true if the whole segment is outside, given that its ends are. Between the planes of the caps the value has
-/// its minimum at one point.
+/// Returns true if the whole segment is outside. Both ends must be outside. Between the planes of the caps, the value
+/// along the segment has one minimum.
 bool CheckedShape::Impl::is_apart(const VectorOf<Digits>& from, const VectorOf<Digits>& to) const {
     const VectorOf<Digits> step = minus(to, from);
     Digits first = 0;
@@ -212,8 +213,8 @@ bool CheckedShape::Impl::is_apart(const VectorOf<Digits>& from, const VectorOf<D
     return round_value(nearest) > kOnSurface;
 }
 
-/// Returns true if doubles prove that p is farther than `least` from the surface. The map to the unit ball (or
-/// cylinder) stretches lengths by at most 1 / smallest half axis.
+/// Returns true if doubles prove that the distance of p from the surface is above `least`. The map to the unit ball (or
+/// cylinder) multiplies lengths by at most 1 / smallest half axis.
 bool CheckedShape::Impl::is_certainly_clear(const Vec3& p, double least) const {
     const VectorOf<double> y = rough_local(p);
     double from_axis = 0.0;
@@ -225,9 +226,9 @@ bool CheckedShape::Impl::is_certainly_clear(const Vec3& p, double least) const {
 }
 
 /// Returns the squared distance from the ellipsoid, or from the cylinder's side. For every multiplier m > -smallest^2,
-/// sum y_i^2 m / (a_i^2 + m) - m is a lower bound of it. The best multiplier gives equality (Lagrange duality of one
-/// quadratic constraint, which leaves no gap). The multiplier is found in doubles. Its error affects the result by its
-/// square only.
+/// sum y_i^2 m / (a_i^2 + m) - m is a lower bound of the squared distance. The best multiplier gives equality, because
+/// Lagrange duality with one quadratic constraint has no gap. The multiplier is found in doubles. The error of the
+/// result is proportional to the square of the multiplier's error.
 Digits CheckedShape::Impl::square_distance_from_round(const VectorOf<Digits>& y) const {
     VectorOf<double> rough{};
     double sum = 0.0;
@@ -235,7 +236,7 @@ Digits CheckedShape::Impl::square_distance_from_round(const VectorOf<Digits>& y)
         rough[i] = static_cast<double>(y[i]);
         sum += square(rough[i] * half[i]);
     }
-    // u = m + smallest^2. The bound rises while sum (y_i a_i / (a_i^2 - smallest^2 + u))^2 > 1.
+    // u = m + smallest^2. The bound increases with u while sum (y_i a_i / (a_i^2 - smallest^2 + u))^2 > 1.
     double low = 0.0;
     double high = std::sqrt(sum);
     const auto rises = [&](double u) {
@@ -261,8 +262,8 @@ Digits CheckedShape::Impl::square_distance_from_round(const VectorOf<Digits>& y)
     return bound;
 }
 
-/// Returns the squared distance from the surface. Outside a cylinder it combines the distances from side and cap.
-/// Inside it is the smaller one.
+/// Returns the squared distance from the surface. Outside a cylinder, the squared distances from side and cap are
+/// combined. Inside, the smaller of the two is returned.
 Digits CheckedShape::Impl::square_distance(const VectorOf<Digits>& y) const {
     Digits around = square_distance_from_round(y);
     if (round_axes == 3) return around;
@@ -292,9 +293,9 @@ bool CheckedShape::intersects(const Vec3& p, const Vec3& q) const {
     return !impl_->is_apart(impl_->local(p), impl_->local(q));
 }
 
-/// The body is convex. A segment from its surface to an inner point is therefore inside. A segment to an outer point is
-/// outside unless it enters the body. If it enters, a point within the first 2^-40 of its length is inside, or the
-/// segment is inside for less than this part.
+/// The body is convex, so a segment from its surface to an inner point is inside. A segment to an outer point is
+/// outside unless it enters the body. If the segment enters the body, the point after 2^-40 of its length is inside, or
+/// the part inside is shorter than that.
 bool CheckedShape::intersects_after_start(const Vec3& p, const Vec3& q) const {
     const int of_q = side(q);
     if (of_q <= 0) return of_q == 0;

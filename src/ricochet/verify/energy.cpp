@@ -7,26 +7,28 @@
 namespace ricochet::verify {
 namespace {
 
-/// A type with more digits than double, if the machine has one. The rounding of the check itself is then negligible.
+/// A type with more digits than double, on machines that have one. The rounding errors of this check are then
+/// negligible.
 using Long = long double;
 
 Long product(const Vec3& a, const Vec3& b) {
     return static_cast<Long>(a.x) * b.x + static_cast<Long>(a.y) * b.y + static_cast<Long>(a.z) * b.z;
 }
 
-/// Returns the kinetic energy per mass, in m^2/s^2.
+/// Returns the kinetic energy per unit mass, in m^2/s^2.
 Long kinetic(const RecordedMotion& motion, double radius) {
     const Long inertia = static_cast<Long>(radius) * radius * 2 / 5;
     return (product(motion.velocity, motion.velocity) + inertia * product(motion.spin, motion.spin)) / 2;
 }
 
-/// Returns the work of a force between both ends, per mass.
+/// Returns the work per unit mass of a constant force between both ends of a part, in m^2/s^2. force: force per unit
+/// mass.
 Long work(const Vec3& force, const MotionPart& part) {
     return product(force, part.end.position) - product(force, part.begin.position);
 }
 
-/// Returns the largest possible length of the path between both ends. The bound assumes that the speed exceeds both end
-/// speeds only by the effect of the forces.
+/// Returns an upper bound of the length of the path between both ends, in m. The bound assumes that only the forces can
+/// raise the speed above the larger end speed.
 double longest_path(const MotionPart& part, double largest_force) {
     const double speed = std::max(length(part.begin.velocity), length(part.end.velocity));
     return part.duration * (speed + part.duration * largest_force);

@@ -9,7 +9,8 @@
 namespace ricochet::verify {
 namespace {
 
-/// A type with more digits than double, if the machine has one. The rounding of the check itself is then negligible.
+/// A type with more digits than double, on machines that have one. The rounding errors of this check are then
+/// negligible.
 using Long = long double;
 
 struct LongVec {
@@ -50,7 +51,7 @@ public:
 private:
     [[nodiscard]] const MetSphere& first(const MetContact& contact) const { return meeting_.spheres[contact.first]; }
     [[nodiscard]] const MetSphere& second(const MetContact& contact) const { return meeting_.spheres[contact.second]; }
-    /// Returns the offset from the first centre to the second.
+    /// Returns the offset from the centre of the first sphere to the centre of the second.
     [[nodiscard]] LongVec between(const MetContact& contact) const {
         return wide(second(contact).before.position) - wide(first(contact).before.position);
     }
@@ -58,7 +59,8 @@ private:
         const LongVec apart = between(contact);
         return (1 / size(apart)) * apart;
     }
-    /// Returns the sum of both speeds. The rounding error of an approach speed is relative to this sum.
+    /// Returns the sum of the speeds of both spheres. Rounding errors of an approach speed are proportional to this
+    /// sum.
     [[nodiscard]] Long speeds(const MetContact& contact) const {
         return size(wide(first(contact).before.velocity)) + size(wide(second(contact).before.velocity));
     }
@@ -90,7 +92,7 @@ private:
         return !(distance - a.radius - b.radius <= reach);
     }
 
-    /// Returns true if an impulse pulls along the line of centres, or if its tangential part exceeds the friction.
+    /// Returns true if the impulse of a contact is attractive, or if its tangential part exceeds the limit of friction.
     [[nodiscard]] bool pulls_or_drags(const MetContact& contact) const {
         const LongVec impulse = wide(contact.impulse);
         const LongVec n = normal(contact);
@@ -112,8 +114,9 @@ private:
         return !holds_for_all([](const ImpactAudit::Pair& pair) { return pair.rolling_friction == 0.0; });
     }
 
-    /// Returns true if a contact has a wrong rebound. A single contact must rebound with the speed that its restitution
-    /// gives. One of several contacts without friction must rebound with at least that speed.
+    /// Returns true if a contact has a wrong rebound. The target is the rebound speed that follows from the
+    /// restitution. A single contact must rebound with the target speed. If there are several contacts without
+    /// friction, each must rebound with at least its target speed.
     [[nodiscard]] bool rebounds_otherwise(const MetContact& contact) const {
         const Long approach = -departure(contact, false);
         const Long rounding = kPairBooks * speeds(contact);
@@ -159,12 +162,13 @@ private:
             turning = turning + off;
             turning_scale += off_scale;
         }
-        // Moments of rolling resistance are opposite and cancel, but fixed spheres absorb some.
+        // The moments of rolling resistance on two spheres are opposite, so they cancel in the sum. The moments on
+        // fixed spheres are not in the sum, so there is no check with fixed spheres.
         return !has_fixed && !(size(turning) <= kPairAngularBooks * turning_scale);
     }
 
-    /// Returns the work, in J, that fixed spheres do on the other one. A fixed sphere may rotate, so friction at its
-    /// surface does work.
+    /// Returns the work, in J, that fixed spheres of a contact do on the other sphere. A fixed sphere may move or
+    /// rotate, so its impulse can do work.
     [[nodiscard]] Long work_of_fixed(const MetContact& contact) const {
         const auto surface_speed = [&](const MetSphere& sphere, Long side) {
             const LongVec arm = (side * sphere.radius) * normal(contact);

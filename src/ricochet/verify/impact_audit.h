@@ -1,10 +1,10 @@
 /// \file
 /// Audit of a recorded impact between spheres. An impact passes under these conditions:
 /// - The spheres touched.
-/// - Impulses push and stay within the friction cone.
-/// - The motion of each sphere changed by its impulses only.
+/// - The impulses are repulsive and inside the friction cone.
+/// - The motion of each sphere changed only by its impulses.
 /// - Momentum and angular momentum are conserved.
-/// - No energy was gained, and none was lost if there is no dissipation.
+/// - No energy was gained. If there is no dissipation, no energy was lost.
 #pragma once
 
 #include <cstddef>
@@ -14,36 +14,38 @@
 
 namespace ricochet::verify {
 
-/// Relative tolerances of the audit of an impact, for momentum and energy, and for angular momentum. They are relative
-/// to the sum of the magnitudes of all terms. Reason: rounding of impulses and, if many spheres touch at once, the
-/// finite number of sweeps over the contacts. Smaller: rounding is reported. Larger: wrong impulses are not found.
-/// Local: a tolerance of the audit, which does not affect the run.
+/// Tolerances of the audit, relative to the sum of the magnitudes of all terms. kPairBooks applies to momentum and
+/// energy, kPairAngularBooks to angular momentum. They allow for rounding of the impulses. If many spheres touch at
+/// once, they also allow for the finite number of solver iterations over the contacts. With smaller values, rounding
+/// would be reported. With larger values, wrong impulses would not be found. Local: tolerances of the audit, which do
+/// not affect the run.
 inline constexpr double kPairBooks = 1e-12;
 inline constexpr double kPairAngularBooks = 1e-10;
 
-/// Position error of a sphere when it meets another, relative to the smaller radius and to its path along walls in the
-/// step. Reason: such a path is made of arcs, which are planned again up to the time of impact. Arcs turn by
-/// kMaxArcAngle, so both plans differ by up to its fourth power over 120, which is 8e-7 of the path. The largest error
-/// seen is 3e-7. On turning surfaces they differ by up to 2.5e-7 radii (at 3 rad/s and half a metre from the axis, in
-/// steps of 2 ms). Smaller: the error of arcs is reported. Larger: impacts of spheres that do not touch are not found.
-/// Local: a tolerance of the audit, which does not affect the run.
+/// Position error of a sphere at an impact with another sphere, relative to the smaller radius and to the sphere's path
+/// along walls in the step. Such a path consists of arcs. At an impact, the arcs are planned again up to the time of
+/// impact. An arc turns by at most kMaxArcAngle. The two plans therefore differ by up to kMaxArcAngle^4 / 120, which is
+/// 8e-7 of the path. The largest observed difference is 3e-7. On turning surfaces, the plans differ by up to 2.5e-7
+/// radii (at 3 rad/s and half a metre from the axis, in steps of 2 ms). With a smaller value, the error of arcs would
+/// be reported. With a larger value, impacts of spheres that do not touch would not be found. Local: a tolerance of the
+/// audit, which does not affect the run.
 inline constexpr double kBoundGap = 1e-6;
 
-/// Contact law between spheres.
+/// Contact law between spheres, against which impacts are audited.
 struct ImpactAudit {
     double restitution = 1.0;
     double friction = 0.0;
     double rolling_friction = 0.0;
-    double resting_speed = 0.0;  ///< in m/s; with a restitution below 1, slower rebounds are set to zero
-    /// True if paths are the parabolas of a uniform force. At the impact spheres then touch to rounding.
+    double resting_speed = 0.0;  ///< in m/s; if the restitution is below 1, slower rebounds are set to zero
+    /// True if paths are parabolas of a uniform force. Spheres then touch at the impact up to rounding.
     bool has_exact_paths = true;
-    /// Contact law between spheres of two materials. The index in by_materials is first * materials + second.
+    /// Contact law between spheres of two materials. Its index in by_materials is first * materials + second.
     struct Pair {
         double restitution = 1.0;
         double friction = 0.0;
         double rolling_friction = 0.0;
     };
-    std::size_t materials = 0;  ///< 0: all spheres have the law above
+    std::size_t materials = 0;  ///< number of materials; 0: the members above apply to all spheres
     std::vector<Pair> by_materials = {};
 };
 

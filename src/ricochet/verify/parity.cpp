@@ -14,7 +14,7 @@ namespace {
 using verify::planar_sign;
 using verify::spatial_sign;
 
-/// Returns the limit of planar_sign for p on the line of a and b, when p moves by (e, e^2). e is positive and
+/// Returns planar_sign of a, b and a point on the line through a and b that is moved by (e, e^2). e is positive and
 /// infinitesimal.
 int perturbed_sign(const Vec3& a, const Vec3& b) {
     if (b.y != a.y) return b.y > a.y ? -1 : 1;
@@ -23,7 +23,8 @@ int perturbed_sign(const Vec3& a, const Vec3& b) {
 
 using Position = std::array<double, 3>;
 
-Position position(const Vec3& p) { return {p.x + 0.0, p.y + 0.0, p.z + 0.0}; }  // -0 and 0 are one point
+// Adding 0.0 turns -0.0 into 0.0, so both are the same position.
+Position position(const Vec3& p) { return {p.x + 0.0, p.y + 0.0, p.z + 0.0}; }
 
 }  // namespace
 
@@ -77,8 +78,8 @@ void ParityOracle::add_faces(const TriangleMesh& mesh) {
     }
 }
 
-/// Returns the columns that a range of coordinates covers. Every step of the computation is monotone, also with
-/// rounding. A point within the range therefore lies in one of these columns.
+/// Returns the columns that cover a range of coordinates. Every operation is monotone, even with rounding. A point
+/// within the range therefore lies in one of these columns.
 ParityOracle::CellRange ParityOracle::cells(double lower, double upper, double origin, double per_length) const {
     const auto cell = [&](double x) {
         const double scaled = std::floor((x - origin) * per_length);
@@ -97,7 +98,8 @@ std::size_t ParityOracle::count_entries() const {
     return entries;
 }
 
-/// Chooses about one column per triangle, or fewer if long triangles would cover too many of them.
+/// Chooses the number of columns: about one column per triangle, or fewer if long triangles would cover too many
+/// columns.
 void ParityOracle::choose_resolution() {
     if (faces_.empty()) return;
     resolution_ = 1 + static_cast<std::size_t>(std::sqrt(static_cast<double>(faces_.size())));
@@ -139,7 +141,7 @@ ParityOracle::Crossing ParityOracle::crossing(const Face& face, const Vec3& poin
     const std::array<int, 3> sides{planar_sign(0, 1, a, b, point), planar_sign(0, 1, b, c, point),
                                    planar_sign(0, 1, c, a, point)};
     if (face.area_sign == 0) {
-        // The triangle is parallel to the ray. The perturbed ray passes beside it, but the point may lie on it.
+        // The triangle is parallel to the ray. The perturbed ray misses the triangle, but the point may lie on it.
         if (sides != std::array<int, 3>{0, 0, 0}) return Crossing::none;
         return verify::intersects(point, point, {a, b, c}) ? Crossing::touches : Crossing::none;
     }
@@ -165,7 +167,7 @@ Side ParityOracle::side(const Vec3& point) const {
     bool is_inside = false;
     for (std::uint32_t i = column_begin_[column]; i < column_begin_[column + 1]; ++i) {
         const Face& face = faces_[column_faces_[i]];
-        if (face.box.upper.z < p.z) break;  // all following faces are below the point too
+        if (face.box.upper.z < p.z) break;  // all following faces are also below the point
         if (p.x < face.box.lower.x || p.x > face.box.upper.x || p.y < face.box.lower.y || p.y > face.box.upper.y)
             continue;
         switch (crossing(face, p)) {

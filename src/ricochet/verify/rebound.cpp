@@ -8,17 +8,19 @@
 namespace ricochet::verify {
 namespace {
 
-/// Relative error of the normal velocities after an impact. Reason: the equations of an impact are solved to 1e-12, and
-/// contact leaves 1e-9 along its surfaces. Smaller: rounding is reported. Larger: wrong restitutions of slow impacts
-/// are not found. Local: a tolerance of the audit, which does not affect the run.
+/// Tolerance of the normal velocities after an impact, relative to the largest speed. The equations of an impact are
+/// solved to 1e-12. Velocities along surfaces in contact can have normal components of up to 1e-9. With a smaller
+/// tolerance, rounding would be reported. With a larger one, wrong restitutions of slow impacts would not be found.
+/// Local: a tolerance of the audit, which does not affect the run.
 constexpr double kReboundRounding = 1e-9;
 
-/// Relative error of the normal velocities if several surfaces with friction are hit. Impacts in wedges may have no
-/// exact solution and are solved approximately. Local: a tolerance of the audit, which does not affect the run.
+/// Tolerance of the normal velocities if several surfaces are hit at once, relative to the largest speed. Impacts in
+/// wedges with friction may have no exact solution and are solved approximately. Local: a tolerance of the audit, which
+/// does not affect the run.
 constexpr double kReboundInWedge = 1e-3;
 
-/// Largest normal speed, relative to all speeds, at which a supporting surface counts as neither approached nor left.
-/// Local: a tolerance of the audit, which does not affect the run.
+/// Largest normal speed, relative to the largest speed, at which a particle neither approaches nor leaves a supporting
+/// surface. Local: a tolerance of the audit, which does not affect the run.
 constexpr double kHeldSpeed = 1e-6;
 
 double restitution_of(const RecordedImpact::Surface& surface, double approach) {
@@ -26,7 +28,8 @@ double restitution_of(const RecordedImpact::Surface& surface, double approach) {
     return approach < threshold ? surface.restitution * approach / threshold : surface.restitution;
 }
 
-/// Returns the velocity, in m/s, along the normal, away from the surface.
+/// Returns the normal velocity of the particle relative to the surface before the impact, in m/s. It is positive away
+/// from the surface.
 double before(const RecordedImpact& impact, const RecordedImpact::Surface& surface) {
     return dot(impact.before.velocity - surface.velocity_before, surface.normal);
 }
@@ -49,7 +52,8 @@ bool has_wrong_rebound(const RecordedImpact& impact) {
     const auto moves_along = [&](const RecordedImpact::Surface& surface) {
         return std::fabs(before(impact, surface)) <= kHeldSpeed * scale;
     };
-    // The interval may have touched both sides of a thin body, or may have left a surface.
+    // A listed surface is a support only if the particle moves along it. The contact interval may have touched both
+    // sides of a thin body, or may have left the surface.
     const auto is_support = [&](const RecordedImpact::Surface& surface) {
         const bool is_listed = std::find(impact.supported_by.begin(), impact.supported_by.end(), surface.surface) !=
                                impact.supported_by.end();
@@ -59,7 +63,8 @@ bool has_wrong_rebound(const RecordedImpact& impact) {
         return !is_support(surface) && before(impact, surface) < 0.0;
     };
     double restitution = 1.0;
-    // In m/s. The impact treats it as zero, and the rebound off other surfaces changes by as much.
+    // Sum of the normal speeds at the supports, in m/s. The impact treats these speeds as zero, so rebounds from other
+    // surfaces can be wrong by this amount.
     double constrained_speed = 0.0;
     std::size_t hit = 0;
     for (const RecordedImpact::Surface& surface : impact.surfaces) {
@@ -73,14 +78,14 @@ bool has_wrong_rebound(const RecordedImpact& impact) {
     const double rounding = part * scale + 2.0 * constrained_speed;
     double least = std::numeric_limits<double>::infinity();
     for (const RecordedImpact::Surface& surface : impact.surfaces) {
-        // Moreau's law allows a particle to return to a surface that it was leaving, at most e times as fast. The
-        // particle hits that surface next.
+        // By Moreau's law, a particle that was leaving a surface may return to this surface, at most at e times its
+        // speed. The particle then hits this surface next.
         const double rebound = is_support(surface) ? 0.0 : -restitution * before(impact, surface);
         const double more = after(impact, surface) - rebound;
         if (more < -rounding) return true;
         if (is_hit(surface)) least = std::min(least, more);
     }
-    // At least one surface pushes, and the particle leaves that surface no faster than required.
+    // At least one hit surface must give an impulse, so the particle must not leave it faster than required.
     return hit > 0 && least > rounding;
 }
 

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the verifier: test whether an impact has the rebound that its surfaces require.
+/// Test whether an impact has the rebound that its surfaces require. Private to the verifier.
 #pragma once
 
 #include "ricochet/core/recorded_impact.h"
@@ -7,9 +7,9 @@
 namespace ricochet::verify {
 
 /// Returns true if the normal velocities after an impact do not agree with the restitution. The smallest restitution of
-/// the hit surfaces counts. A surface is hit if the particle approaches it and it does not support the particle before
-/// the impact. Surfaces of the contact interval that the impact ends count as supports if they are neither approached
-/// nor left. They count even if their flag ContactSurface::is_support is false.
+/// all hit surfaces applies. A surface is hit if the particle approaches it and the surface does not support the
+/// particle before the impact. A surface of the preceding contact interval is also a support if the particle neither
+/// approaches nor leaves it. This is true even if ContactSurface::is_support is false.
 [[nodiscard]] bool has_wrong_rebound(const RecordedImpact& impact);
 
 }  // namespace ricochet::verify

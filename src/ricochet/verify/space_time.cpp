@@ -11,25 +11,25 @@
 namespace ricochet::verify {
 namespace {
 
-/// Largest number of times that the time interval is halved, and largest number of pieces. Beyond these the test is
-/// undecided.
+/// Largest number of successive halvings of the time interval, and largest number of pieces. Beyond these limits the
+/// test ends undecided.
 constexpr int kDeepest = 50;
 constexpr int kMostPieces = 2000;
 
-/// Numbers of 113 bits decide nearly all cases that doubles leave in doubt. They cost a third of numbers with a hundred
-/// digits.
+/// Numbers with 113 bits decide nearly all cases that doubles cannot decide. They cost a third of the time of numbers
+/// with a hundred digits.
 using Quad = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_quad::backend_type,
                                            boost::multiprecision::et_off>;
 using Digits = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_100::backend_type,
                                              boost::multiprecision::et_off>;
 
-/// Returns the error bound of a sum of some hundred rounded products, relative to the sum of magnitudes.
+/// Returns the error bound of a sum of about a hundred rounded products, relative to the sum of their magnitudes.
 template <class Real>
 Real error_of() {
     return 1024 * std::numeric_limits<Real>::epsilon();
 }
 
-/// Signs of some values that are certain. More digits may decide the others.
+/// Certain signs of a set of values. The signs of other values may be decided with more digits.
 struct Signs {
     bool all_positive = false;
     bool all_negative = false;
@@ -37,12 +37,12 @@ struct Signs {
     bool any_negative = false;
 };
 
-/// Largest degree of a factor, and largest number of Bernstein coefficients of a product.
+/// Largest degree of a factor of a product, and largest number of Bernstein coefficients of a product.
 constexpr std::size_t kMostDegree = 3;
 constexpr std::size_t kMostValues = kMostDegree + 2;
 
-/// Bernstein coefficients of a polynomial in time, which bound it. Each is stored with the sum of magnitudes of its
-/// terms.
+/// Bernstein coefficients of a polynomial in time. The polynomial lies between the smallest and the largest
+/// coefficient. Each coefficient is stored with the sum of the magnitudes of its terms.
 template <class Real>
 struct Bounded {
     std::array<Real, kMostValues> values{};
@@ -81,8 +81,8 @@ double choose(std::size_t n, std::size_t k) {
     return value;
 }
 
-/// Weights of products of Bernstein coefficients. They combine the coefficients of two polynomials of degrees m and n,
-/// at most kMostDegree, into those of the product.
+/// Weights for the product of two polynomials in Bernstein form. The degrees m and n of the polynomials are at most
+/// kMostDegree.
 template <class Real>
 class Weights {
 public:
@@ -104,8 +104,8 @@ private:
     std::array<Real, kSize * kSize * kSize * kSize> weights_{};
 };
 
-/// Returns the product. Each coefficient is the weighted mean of all products of two coefficients that contribute to
-/// it.
+/// Returns the product of two polynomials. Each of its coefficients is a weighted mean of products of the factors'
+/// coefficients.
 template <class Real>
 Bounded<Real> operator*(const Bounded<Real>& a, const Bounded<Real>& b) {
     const std::size_t m = a.count - 1;
@@ -146,7 +146,8 @@ Bounded<Real> dot_of(const Offset<Real>& a, const Offset<Real>& b) {
     return combined(combined(a[0] * b[0], a[1] * b[1], 1), a[2] * b[2], 1);
 }
 
-/// Returns the offset from one moving point to another, over a part of the time.
+/// Returns the offset from one moving point to another as polynomials in time, over the fractions `begin` to `end` of
+/// the time interval.
 template <class Real>
 Offset<Real> offset_of(const StepPath& from, const StepPath& to, double begin, double end) {
     Offset<Real> offset;
@@ -162,8 +163,8 @@ Offset<Real> offset_of(const StepPath& from, const StepPath& to, double begin, d
     return offset;
 }
 
-/// A vector of numbers with more digits than doubles. Near an edge, a direction across it depends on the square of the
-/// distance. Doubles lose this if the distance is small.
+/// A vector of numbers that may have more digits than doubles. Near an edge, a direction perpendicular to the edge
+/// depends on the square of the distance. If the distance is small, doubles lose this information.
 template <class Real>
 using Vector = std::array<Real, 3>;
 
@@ -198,7 +199,7 @@ Vector<Real> across(const Vector<Real>& a, const Vector<Real>& b) {
     return {Real(a[1] * b[2] - a[2] * b[1]), Real(a[2] * b[0] - a[0] * b[2]), Real(a[0] * b[1] - a[1] * b[0])};
 }
 
-/// Returns the direction or its opposite, so that it points to the side of an offset's end.
+/// Returns the direction or its opposite, such that its scalar product with the offset is not negative.
 template <class Real>
 Vector<Real> towards(const Vector<Real>& direction, const Vector<Real>& offset) {
     return product(direction, offset) < 0 ? times(Real(-1), direction) : direction;
@@ -207,7 +208,7 @@ Vector<Real> towards(const Vector<Real>& direction, const Vector<Real>& offset) 
 template <class Real>
 using Triple = std::array<Vector<Real>, 3>;
 
-/// Returns the first corner of the longest edge. The edge ends at the next corner.
+/// Returns the index of the first corner of the longest edge. The edge ends at the next corner.
 template <class Real>
 std::size_t longest_edge(const Triple<Real>& c) {
     std::size_t longest = 0;
@@ -222,7 +223,8 @@ std::size_t longest_edge(const Triple<Real>& c) {
     return longest;
 }
 
-/// Returns the parameter of the edge's point nearest to an offset from its start: 0 at the start, 1 at the end.
+/// Returns the parameter of the point on an edge that is nearest to a given point: 0 at the start of the edge, 1 at the
+/// end. offset: from the start of the edge to the given point.
 template <class Real>
 Real part_of(const Vector<Real>& edge, const Vector<Real>& offset) {
     const Real squared = product(edge, edge);
@@ -249,8 +251,9 @@ public:
     }
 
 private:
-    /// Returns true if the point is proven apart: on one side of the plane all the time, beyond one of the edges, or
-    /// apart along a direction. Otherwise sets `is_in_doubt` if more digits could prove it.
+    /// Returns true if the point is proven to be apart from the triangle. It must be on one side of the triangle's
+    /// plane, beyond one of the edges, or apart along a fixed direction, during the whole interval. Otherwise sets
+    /// `is_in_doubt` if a computation with more digits could prove it.
     template <class Real>
     [[nodiscard]] bool is_apart_in(double begin, double end, bool& is_in_doubt) const {
         std::array<Offset<Real>, 3> to_point;
@@ -290,9 +293,9 @@ private:
         });
     }
 
-    /// Returns directions along which the point may be beyond the whole triangle. A triangle with hardly any area is
-    /// treated as its longest edge. Two directions serve that case: across the edge, towards the point, and across the
-    /// edge and the point's path along it.
+    /// Returns candidate directions along which the point may be beyond the whole triangle. The last two directions are
+    /// for triangles with almost no area, which are treated as their longest edge. One points from the edge to the
+    /// point. The other is perpendicular to the edge and to the path of the point relative to the edge.
     template <class Real>
     [[nodiscard]] std::array<Vector<Real>, 7> directions_at(double middle, double begin, double end) const {
         const Vector<Real> p = at<Real>(point_, middle);

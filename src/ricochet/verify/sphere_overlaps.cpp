@@ -9,7 +9,7 @@
 namespace ricochet {
 namespace {
 
-/// Largest number of spheres in a node that is not split.
+/// Largest number of spheres in a leaf.
 constexpr std::uint32_t kLeaf = 8;
 
 Box3 box_of(const StandingSphere& sphere) {
@@ -24,7 +24,7 @@ bool meet(const Box3& a, const Box3& b) {
 
 auto ids(const SphereOverlaps::Found& found) { return std::pair(found.first, found.second); }
 
-/// Returns the error of a distance, in m, by rounding of coordinates.
+/// Returns the error of a distance, in m, that rounding of the coordinates can cause.
 double rounding(const Vec3& a, const Vec3& b) {
     return 16.0 * std::numeric_limits<double>::epsilon() * std::max(max_abs(a), max_abs(b));
 }

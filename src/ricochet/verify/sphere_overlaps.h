@@ -1,5 +1,5 @@
 /// \file
-/// Finds overlapping spheres with a binary tree. The search shares no code with the one that finds impacts.
+/// Search for overlapping spheres with a binary tree. It shares no code with the search for impacts.
 #pragma once
 
 #include <array>
@@ -12,15 +12,16 @@
 
 namespace ricochet {
 
-/// Largest tolerated overlap of two spheres, over the smaller radius, if spheres may be time-stepped together. Reason:
-/// the sweeps over contacts stop before full precision. The residual may grow to half of this while a heap is filled.
-/// Smaller: heaps are reported. Larger: errors of the contact problem are not found. Local: a tolerance of the audit,
-/// which does not affect the run.
+/// Largest tolerated overlap of two spheres, divided by the smaller radius, if the run has contact islands. The
+/// iterations of the contact solver end before full precision. While a heap is filled, the resulting overlap can grow
+/// to half of this value. With a smaller value, heaps would be reported. With a larger value, errors of the contact
+/// solver would not be found. Local: a tolerance of the audit, which does not affect the run.
 inline constexpr double kMostPlannedOverlap = 0.01;
 
-/// Largest tolerated overlap if all impacts are resolved sequentially. Reason: rounding of times of impact, and of
-/// coordinates of a million radii. Smaller: rounding is reported. Larger: missed grazing impacts are not found. Local:
-/// a tolerance of the audit, which does not affect the run.
+/// Largest tolerated overlap, divided by the smaller radius, if all impacts are resolved sequentially. The value allows
+/// for rounding of times of impact, and of coordinates as large as a million radii. With a smaller value, rounding
+/// would be reported. With a larger value, missed grazing impacts would not be found. Local: a tolerance of the audit,
+/// which does not affect the run.
 inline constexpr double kMostMetOverlap = 1e-9;
 
 /// State of a sphere that collides with other spheres.
@@ -28,32 +29,34 @@ struct StandingSphere {
     std::uint64_t particle = 0;  ///< id
     Vec3 position;               ///< in m
     double radius = 0.0;         ///< in m, > 0
-    bool is_new = false;         ///< true: not present in the last call
+    bool is_new = false;         ///< true: the sphere was not present in the last call
 };
 
-/// Search for overlaps. Remembers the overlaps of the last call.
+/// Search for overlaps, with a memory of the overlaps of the last call.
 class SphereOverlaps {
 public:
-    /// Two spheres that overlap more than they may.
+    /// Two spheres that overlap by more than the tolerance.
     struct Found {
-        std::uint64_t first = 0;  ///< the lower id
+        std::uint64_t first = 0;  ///< lower id of the two spheres
         std::uint64_t second = 0;
-        Vec3 position;       ///< centre of the first, in m
+        Vec3 position;       ///< centre of the first sphere, in m
         double depth = 0.0;  ///< in m
     };
 
-    /// Returns the new overlaps above `most`, which is relative to the smaller radius, in ascending order of the ids.
-    /// Overlaps that were as large in the last call are left out, and so are those with a new sphere.
+    /// Returns the new overlaps above `most`, in ascending order of the ids. most: tolerance, relative to the smaller
+    /// radius. Overlaps that were at least as large in the last call are not returned. Overlaps with a new sphere are
+    /// not returned either.
     [[nodiscard]] std::vector<Found> check(std::span<const StandingSphere> spheres, double most);
-    /// Returns the largest overlap over the smaller radius in the last call; 0 without any.
+    /// Returns the largest overlap of the last call, divided by the smaller radius of its two spheres; 0 if there was
+    /// no overlap.
     [[nodiscard]] double largest() const { return largest_; }
 
 private:
     struct Node {
-        Box3 box;             // box of whole spheres, in m
-        std::uint32_t begin;  // range of its spheres in order_
+        Box3 box;             // bounding box of the spheres, in m
+        std::uint32_t begin;  // range of the node's spheres in order_
         std::uint32_t end;
-        std::uint32_t children;  // the first of two nodes; 0: none
+        std::uint32_t children;  // index of the first of two children; 0: a leaf
     };
 
     void build(std::span<const StandingSphere> spheres);
@@ -63,7 +66,7 @@ private:
 
     std::vector<Node> nodes_;
     std::vector<std::uint32_t> order_;
-    std::vector<Found> before_;  // in ascending order
+    std::vector<Found> before_;  // overlaps of the last call, in ascending order of the ids
     double largest_ = 0.0;
 };
 

@@ -13,16 +13,17 @@ namespace ricochet::verify {
 
 namespace {
 
-/// Error of a determinant relative to the sum of its terms' magnitudes. Each term passes at most 8 roundings of half an
-/// epsilon, and so does the sum of magnitudes. The bound of 8 epsilon is therefore about twice the largest error.
+/// Error bound of a determinant, relative to the sum of the magnitudes of its terms. Each term undergoes at most 8
+/// roundings of half an epsilon, and so does the sum of the magnitudes. The bound of 8 epsilon is therefore about twice
+/// the largest possible error.
 template <class Real>
 constexpr Real kFilter = 8 * std::numeric_limits<Real>::epsilon();
 
-/// Smallest error bound at which the filter decides. Below it, products may have been rounded to zero. Local: a guard
-/// against the end of the range of doubles.
+/// Smallest error bound at which the filter decides. Below this value, products may have underflowed to zero. Local: a
+/// limit from the range of doubles.
 constexpr double kSmallestBound = 0x1p-950;
 
-/// Returns +1 or -1 if the value certainly has that sign, otherwise 0. Also returns 0 after an overflow.
+/// Returns the sign of the value, +1 or -1, if it is certain. Returns 0 if it is not certain, or after an overflow.
 template <class Real>
 int certain_sign(Real value, Real magnitude) {
     const Real bound = kFilter<Real> * magnitude;
@@ -52,14 +53,15 @@ int filtered_spatial_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec
     return certain_sign(value, magnitude);
 }
 
-// Integers of fixed size need no heap memory. Values that do not fit use unlimited integers.
+// Small integers have a fixed size, so they need no heap memory. Larger values use integers of unlimited size.
 using SmallInteger = boost::multiprecision::int512_t;
 using LargeInteger = boost::multiprecision::cpp_int;
 constexpr int kSmallBits = 500;
 
-/// Scale that turns coordinates into integers: multiplication of all of them by one power of two.
+/// Range of exponents of some coordinates. Multiplication of all coordinates by one power of two turns them into
+/// integers.
 struct Scale {
-    int lowest = std::numeric_limits<int>::max();      ///< exponent of the last digit of the smallest coordinate
+    int lowest = std::numeric_limits<int>::max();      ///< exponent of the last bit of the smallest coordinate
     int highest = std::numeric_limits<int>::lowest();  ///< exponent of the largest coordinate
 
     template <class... Points>
@@ -74,7 +76,7 @@ struct Scale {
             highest = std::max(highest, exponent);
         }
     }
-    /// Returns true if products of `factors` differences and their sums fit into small integers.
+    /// Returns true if sums of products of `factors` coordinate differences fit into small integers.
     [[nodiscard]] bool is_small(int factors) const {
         return highest < lowest || factors * (highest - lowest + 2) + 4 <= kSmallBits;
     }
@@ -120,7 +122,8 @@ int exact_planar_sign(std::size_t u, std::size_t v, const Vec3& a, const Vec3& b
     return Integer(ab[u] * ap[v] - ab[v] * ap[u]).sign();
 }
 
-/// The normal has a scale of its own, because its exponents are unrelated to the exponents of positions.
+/// Returns the sign of n . (p - point) in exact arithmetic. The normal has its own scale, because its exponents are
+/// unrelated to those of positions.
 int exact_height_sign(const Vec3& n, const Vec3& point, const Vec3& p) {
     const Scale of_normal(n), of_places(point, p);
     const auto difference = whole_between<LargeInteger>(point, p, of_places);
@@ -145,7 +148,7 @@ int planar_sign(int u, int v, const Vec3& a, const Vec3& b, const Vec3& p) {
     const double first = (b[u] - a[u]) * (p[v] - a[v]);
     const double second = (b[v] - a[v]) * (p[u] - a[u]);
     if (const int sign = certain_sign(first - second, std::fabs(first) + std::fabs(second)); sign != 0) return sign;
-    // A difference is zero only if it is exactly zero. Axis-parallel edges therefore need no integers.
+    // The difference of two different doubles is never rounded to zero. Axis-parallel edges therefore need no integers.
     if ((b[u] == a[u] || p[v] == a[v]) && (b[v] == a[v] || p[u] == a[u])) return 0;
     const Scale scale(a, b, p);
     const auto i = static_cast<std::size_t>(u), j = static_cast<std::size_t>(v);
@@ -165,8 +168,9 @@ bool on_one_line(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 namespace {
 
-/// Tests a segment and a triangle in one plane. Both are projected onto the first coordinate plane in which the
-/// triangle has an area. Two convex figures are apart if the line of a side of one figure separates them strictly.
+/// Returns true if a segment and a triangle in the same plane intersect. Both are projected onto the first coordinate
+/// plane in which the triangle has an area. Two convex figures are apart if the line through a side of one figure
+/// strictly separates them.
 bool meets_in_plane(const Vec3& p, const Vec3& q, const Corners& t) {
     constexpr std::array<std::array<int, 2>, 3> kViews{{{0, 1}, {1, 2}, {2, 0}}};
     for (const auto& [u, v] : kViews) {
@@ -181,11 +185,11 @@ bool meets_in_plane(const Vec3& p, const Vec3& q, const Corners& t) {
             of_a != 0 && planar_sign(u, v, p, q, t.b) == of_a && planar_sign(u, v, p, q, t.c) == of_a;
         return !is_beside;
     }
-    return false;  // no area at all
+    return false;  // the triangle has no area
 }
 
-/// Returns true if the line through p and q passes all three sides with the same orientation. The line must cross the
-/// triangle's plane in one point.
+/// Returns true if the line through p and q has the same orientation relative to all three sides, so that it passes
+/// through the triangle. The line must cross the triangle's plane in one point.
 bool passes_through(const Vec3& p, const Vec3& q, const Corners& t) {
     const int ab = spatial_sign(p, q, t.a, t.b);
     const int bc = spatial_sign(p, q, t.b, t.c);
@@ -218,8 +222,8 @@ Vec3 crossing_point(const Vec3& p, const Vec3& q, const Corners& t) {
 
 namespace {
 
-/// Error of a scalar product of rounded differences, relative to the lengths of both: some 5 roundings of 2^-53. Local:
-/// an error bound of this arithmetic.
+/// Error bound of a scalar product of rounded differences, relative to the product of both lengths. It covers about 5
+/// roundings of 2^-53. Local: an error bound of the formulas in this file.
 constexpr double kProductError = 0x1p-49;
 
 template <class Real>
@@ -240,8 +244,8 @@ Real product(const VectorOf<Real>& u, const VectorOf<Real>& v) {
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
 
-/// Returns the offset from the nearest point of the triangle to p. It is the shortest of the offsets from the three
-/// sides and from the plane. The plane counts only if its nearest point lies on the triangle.
+/// Returns the offset to p from the nearest point of the triangle. This is the shortest of the offsets from the three
+/// sides and from the plane. The plane is used only if its point nearest to p lies on the triangle.
 template <class Real>
 VectorOf<Real> offset_from(const Vec3& p, const Corners& t) {
     VectorOf<Real> best = difference<Real>(p, t.a);
@@ -271,9 +275,10 @@ VectorOf<Real> offset_from(const Vec3& p, const Corners& t) {
     return best;
 }
 
-/// Returns true if doubles prove that p is at least `least` away. A plane across any direction separates if the whole
-/// triangle is behind it. The distance of p from the triangle is then at least its distance from the plane. The
-/// direction may differ slightly from that of the nearest point.
+/// Returns true if doubles prove that the distance of p from the triangle is at least `least`. If the whole triangle is
+/// behind a plane, the distance of p from the triangle is at least its distance from the plane. This is true for any
+/// direction of the plane's normal. The direction used here may therefore differ slightly from the direction of the
+/// nearest point.
 bool is_certainly_clear(const Vec3& p, const Corners& t, double least) {
     const VectorOf<double> offset = offset_from<double>(p, t);
     const Vec3 direction{offset[0], offset[1], offset[2]};

@@ -1,6 +1,6 @@
 /// \file
-/// The verifier's own hierarchy of boxes, in doubles. It finds all triangles near a segment or a point, and possibly
-/// some others.
+/// The verifier's own bounding volume hierarchy, in doubles. Queries find all triangles near a segment or a box, and
+/// possibly further triangles.
 #pragma once
 
 #include <array>
@@ -15,20 +15,21 @@
 
 namespace ricochet::verify {
 
-/// A triangle of a collider.
+/// A triangle with the indices that identify it.
 struct NamedTriangle {
     Corners corners;
     std::uint32_t collider = 0;
     std::uint32_t triangle = 0;  ///< index in the collider's mesh
 };
 
-/// Tree of triangles. Immutable; safe from any number of threads.
+/// Tree of triangles. It is immutable and thread-safe.
 class TriangleTree {
 public:
     TriangleTree() = default;
     explicit TriangleTree(std::vector<NamedTriangle> triangles);
 
-    /// Calls visit(triangle) for every triangle whose box the segment [p, q] touches, and possibly for a few more.
+    /// Calls visit(triangle) for every triangle whose box touches the segment [p, q], and possibly for a few further
+    /// triangles.
     template <class Visit>
     void near_segment(const Vec3& p, const Vec3& q, const Visit& visit) const {
         if (!nodes_.empty()) visit_nodes(SegmentTest(p, q, largest_), visit);
@@ -42,33 +43,33 @@ public:
 private:
     struct Node {
         Box3 box;
-        /// First triangle of a leaf. In other nodes, the second child; the first child is the next node.
+        /// First triangle of a leaf, or second child of another node. The first child is the next node.
         std::uint32_t first = 0;
-        std::uint32_t count = 0;  ///< triangles of a leaf; 0 for other nodes
+        std::uint32_t count = 0;  ///< number of triangles of a leaf; 0 for other nodes
     };
 
     static bool touches(const Box3& a, const Box3& b) {
-        // Avoids branches, which are hard to predict here.
+        // The code has no branches, because they would often be mispredicted.
         const bool x = (a.lower.x <= b.upper.x) & (b.lower.x <= a.upper.x);
         const bool y = (a.lower.y <= b.upper.y) & (b.lower.y <= a.upper.y);
         const bool z = (a.lower.z <= b.upper.z) & (b.lower.z <= a.upper.z);
         return x & y & z;
     }
 
-    /// Separating axis test of a segment. The axes of the boxes need no tolerance, because they involve no rounding.
-    /// The axes perpendicular to the segment and a coordinate axis use the tolerance slack_.
+    /// Separating axis test of a segment and a box. The coordinate axes need no tolerance, because their comparisons
+    /// have no rounding. Axes perpendicular to the segment and to a coordinate axis use the tolerance slack_.
     class SegmentTest {
     public:
         SegmentTest(const Vec3& p, const Vec3& q, double largest) : start_(p), step_(q - p), size_(abs(step_)) {
             box_.include(p);
             box_.include(q);
-            // Each product below has some 5 roundings of 2^-53, relative to coordinates of this size.
+            // Each product below has about 5 roundings of 2^-53, relative to coordinates of this size.
             slack_ = 0x1p-48 * std::fmax(largest, std::fmax(max_abs(p), max_abs(q)));
         }
         bool operator()(const Box3& box) const {
             if (!touches(box_, box)) return false;
             const Vec3 half = 0.5 * (box.upper - box.lower);
-            // A segment that is short beside the box seldom misses it.
+            // A segment that is short compared with the box seldom misses the box, so the exact test would not pay off.
             if (max_abs(size_) < max_abs(half)) return true;
             const Vec3 centre = 0.5 * (box.lower + box.upper) - start_;
             return overlaps(step_.x, step_.y, centre.x, centre.y, size_.x, size_.y, half.x, half.y) &&
@@ -110,13 +111,13 @@ private:
 
     void build(std::size_t begin, std::size_t end, const std::vector<Box3>& boxes, std::vector<std::uint32_t>& order);
 
-    /// Largest depth. Halving 2^32 triangles gives no more levels than this.
+    /// Upper bound of the depth. Repeated halving of 2^32 triangles gives fewer levels.
     static constexpr std::size_t kMostDepth = 48;
 
-    std::vector<NamedTriangle> triangles_;  ///< in the order of the leaves
-    std::vector<Box3> boxes_;               ///< one per triangle
-    std::vector<Node> nodes_;               ///< in depth-first order
-    double largest_ = 0.0;                  ///< largest coordinate
+    std::vector<NamedTriangle> triangles_;  ///< triangles in the order of the leaves
+    std::vector<Box3> boxes_;               ///< one box per triangle
+    std::vector<Node> nodes_;               ///< nodes in depth-first order
+    double largest_ = 0.0;                  ///< largest coordinate, in m
 };
 
 }  // namespace ricochet::verify

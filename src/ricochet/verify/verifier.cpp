@@ -28,7 +28,7 @@ bool same_bits(const Vec3& a, const Vec3& b) {
 }  // namespace
 
 struct Verifier::Impl {
-    /// The step to check, and the list for its violations.
+    /// The step to check, and the list that receives its violations.
     struct Judged {
         const VerifiedStep& step;
         std::vector<Violation>& violations;
@@ -53,7 +53,7 @@ struct Verifier::Impl {
     [[nodiscard]] std::vector<Side> sides_of(const Vec3& p, double time) const;
     [[nodiscard]] bool is_on_surface(const Vec3& p, double time) const;
 
-    std::vector<CheckedFrame> frames;  ///< the first contains the colliders at rest
+    std::vector<CheckedFrame> frames;  ///< all frames; the first one contains the colliders at rest
     std::vector<CheckedDeformation> deformations;
 };
 
@@ -97,7 +97,8 @@ bool Verifier::Impl::is_on_surface(const Vec3& p, double time) const {
                        [&](const CheckedDeformation& deformation) { return deformation.is_on_surface(p, time); });
 }
 
-/// Checks that the segments join in space. If colliders move, they must join in time too.
+/// Checks that each segment starts where the last one ended. If colliders move, it must also start at the time when the
+/// last one ended.
 void Verifier::Impl::check_chain(const Judged& judged, const VerifiedParticle& particle) const {
     const VerifiedStep& step = judged.step;
     const auto expect = [&](const Vec3& at, const Vec3& next, double time_at, double time_next) {
@@ -117,8 +118,8 @@ void Verifier::Impl::check_chain(const Judged& judged, const VerifiedParticle& p
 
 void Verifier::Impl::check_segment(const Judged& judged, const Segment& segment, const VerifiedParticle& particle,
                                    bool starts_on_surface) const {
-    // The position itself was checked with the previous segment. If something moves, a particle at rest still has a
-    // path through space and time.
+    // A segment between equal positions needs no check if nothing moves, because the position was checked with the
+    // previous segment. If colliders move, a particle at rest still has a path through space and time.
     if (same_bits(segment.from, segment.to) && !moves()) return;
     if (!is_finite(segment.from) || !is_finite(segment.to)) {
         judged.report(ViolationKind::gap, segment.to, segment.time, std::nullopt);
@@ -141,7 +142,8 @@ void Verifier::Impl::check_segment(const Judged& judged, const Segment& segment,
     }
 }
 
-/// Checks the sides. A position that is not finite has no known side; it has already been reported as a gap.
+/// Checks the sides of all closed surfaces. A position that is not finite has no known side. Such a position has
+/// already been reported as a gap.
 void Verifier::Impl::check_sides(const Judged& judged, VerifiedParticle& particle) const {
     const VerifiedStep& step = judged.step;
     if (!is_finite(step.to)) return;
@@ -198,7 +200,8 @@ void Verifier::Impl::check_distance(const Judged& judged, VerifiedParticle& part
     particle.has_been_free = !first;
 }
 
-/// Checks that surfaces at rest add no energy in any part, and that the parts join without gaps.
+/// Checks that surfaces at rest add no energy in any recorded part of the motion, and that each part starts in the end
+/// state of the last one.
 void Verifier::Impl::check_energy(const Judged& judged) {
     const VerifiedStep& step = judged.step;
     if (step.motion.parts.empty()) return;

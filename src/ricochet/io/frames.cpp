@@ -14,7 +14,8 @@ namespace {
 /// Particles per unit of parallel work.
 constexpr std::size_t kFramesBlock = 1 << 14;
 
-// Arrays of a frame to be filled. Each array reuses the memory of the previous frame's array.
+// List of a frame's arrays, which are filled in order. Each array reuses the memory of the same array in the previous
+// frame.
 class ArrayList {
 public:
     ArrayList(std::vector<VtkArray>& arrays, std::size_t length) : arrays_(arrays), length_(length) {}
@@ -38,7 +39,7 @@ private:
     std::size_t used_ = 0;
 };
 
-// Copies the values of all particles in the order of their ids.
+// Copies the values of all particles to `to`. order: indices of the particles in the order of their ids.
 template <typename To, typename From>
 void gather(const std::vector<From>& from, const std::vector<std::uint32_t>& order, To* to) {
     require_same_length(from.size(), order.size(), "array of the particles");
@@ -73,7 +74,7 @@ std::vector<const SpringFace*> intact_faces(const SpringNetwork& springs, const 
     return intact;
 }
 
-// Returns the triangle of a face. Its particles exist, because its springs are intact.
+// Returns the triangle of a face as rows in the frame. The particles of a face exist while its springs are intact.
 Triangle triangle_of(const SpringFace& face, const VtkPolyData& frame) {
     const VtkArray* array = find_array(frame.point_arrays, "id");
     if (array == nullptr || !std::holds_alternative<std::vector<std::int64_t>>(array->values)) {
@@ -89,7 +90,7 @@ Triangle triangle_of(const SpringFace& face, const VtkPolyData& frame) {
     return triangle;
 }
 
-// Returns the arrays of the totals; none if the simulation records no totals for triangles.
+// Returns the cell arrays of the totals; no arrays if the simulation records no totals for triangles.
 std::vector<VtkArray> total_arrays(const TriangleTotals& totals) {
     if (totals.hits.empty()) return {};
     std::vector<VtkArray> arrays =
@@ -104,7 +105,8 @@ void require_lengths(const TriangleTotals& totals) {
     require_same_length(totals.lasting_impulse.size(), totals.hits.size(), "lasting impulses of a collider");
 }
 
-// Returns the totals of the whole surface for each of its triangles. Planes, balls and cylinders are a single surface.
+// Returns a list with the totals of the whole surface for each of its triangles. Planes, balls and cylinders are single
+// surfaces with one total.
 TriangleTotals repeated(const TriangleTotals& totals, std::size_t count) {
     const std::size_t lasting = totals.lasting_impulse.empty() ? 0 : count;
     return {std::vector<std::uint64_t>(count, totals.hits[0]), std::vector<Vec3>(count, totals.impulse[0]),
@@ -167,7 +169,7 @@ void add_springs(VtkPolyData& frame, const Particles& particles, const SpringNet
     const std::vector<std::uint32_t> order = particles.order_by_id();
     require_same_length(particles.position.size(), order.size(), "positions of the particles");
     require_same_length(frame.points.size(), order.size(), "points of the particles' frame");
-    std::vector<std::uint32_t> row(order.size());  // row in the frame, by particle
+    std::vector<std::uint32_t> row(order.size());  // row of each particle in the frame
     for (std::uint32_t k = 0; k < order.size(); ++k) row[order[k]] = k;
     std::vector<double> stretch(springs.springs().size(), 0.0);
     for (const SpringNetwork::Bond& bond : springs.bonds()) {

@@ -52,7 +52,7 @@ int base64_digit(char c) {
     return c == '/' ? 63 : -1;
 }
 
-// Decodes the first `wanted` bytes of a base64 text, or less if the text ends. Padding may occur inside the text,
+// Decodes the first `wanted` bytes of a base64 text, or fewer if the text ends. Padding may occur within the text,
 // because some writers encode size and data separately.
 std::string base64_bytes(std::string_view text, std::uint64_t wanted) {
     std::string bytes;
@@ -187,7 +187,7 @@ private:
     }
 
     std::array<std::int64_t, 6> extent_of(const XmlTag& tag, std::string_view name) const {
-        // Parsed as 32 bits, so that differences in 64 bits do not overflow.
+        // The numbers are parsed as 32-bit integers, so their differences do not overflow 64 bits.
         const std::vector<std::int32_t> numbers = numbers_of<std::int32_t>(tag, name, 6);
         std::array<std::int64_t, 6> extent{};
         std::copy(numbers.begin(), numbers.end(), extent.begin());
@@ -220,7 +220,7 @@ private:
         expect(array.tag, "type", {"Float32", "Float64"});
         expect(array.tag, "format", {"ascii", "binary", "appended"});
         const std::string& format = attribute_of(source_, array.tag, "format");
-        // Memory for the values, and for two copies of their bytes.
+        // This is the memory for the values and for two copies of their bytes.
         require_memory(3.0 * static_cast<double>(points_) * sizeof(Vec3), source_.path.string());
         std::vector<Vec3> values = format == "ascii" ? ascii_values(array)
                                    : attribute_of(source_, array.tag, "type") == "Float32"
@@ -266,7 +266,7 @@ private:
         return values;
     }
 
-    // Returns the data of an array without the preceding size.
+    // Returns the bytes of an array without the size that precedes them.
     std::string block_of(const ArrayTag& array, std::uint64_t expected) const {
         const bool appended = attribute_of(source_, array.tag, "format") == "appended";
         std::string_view text = array.tag.text;
@@ -297,7 +297,7 @@ private:
     std::vector<ArrayTag> arrays_;
     std::array<std::int64_t, 6> whole_{};
     std::string section_;
-    std::string_view appended_;  // begins after the underscore
+    std::string_view appended_;  // appended data, from the byte after the underscore
     std::size_t size_bytes_ = 4;
     std::uint64_t points_ = 1;
     bool appended_raw_ = false;

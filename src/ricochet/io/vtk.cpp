@@ -61,7 +61,7 @@ std::string escaped(std::string_view text) {
     return out;
 }
 
-// Builds the header text and records the data blocks that follow it.
+// Builds the header text and records the data blocks that follow the header.
 class Layout {
 public:
     void text(std::string_view line) { header_ += line; }
@@ -80,8 +80,8 @@ public:
               std::holds_alternative<std::vector<Vec3>>(array.values) ? 3 : 1, bytes_of(array.values));
     }
 
-    /// Appends texts that end with a zero byte each. Source of the format: vtkXMLDataReader, which reads them from
-    /// appended data.
+    /// Appends a list of texts. Each text ends with a zero byte. Source of the format: vtkXMLDataReader reads such
+    /// texts from appended data.
     void texts(const VtkTexts& list) {
         std::string& bytes = own_bytes_.emplace_back();
         for (const std::string& value : list.values) (bytes += value.substr(0, value.find('\0'))) += '\0';
@@ -107,7 +107,7 @@ public:
 
 private:
     std::string header_;
-    std::deque<std::string> own_bytes_;  // bytes of text blocks; a deque, so that addresses stay valid
+    std::deque<std::string> own_bytes_;  // bytes of text blocks, in a deque so that addresses stay valid
     std::vector<std::string_view> blocks_;
     std::uint64_t offset_ = 0;
 };

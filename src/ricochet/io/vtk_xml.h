@@ -1,5 +1,5 @@
 /// \file
-/// Parser for the tags of VTK's XML files, limited to the needs of their readers.
+/// Parser for the tags of VTK's XML files. It supports only the features that the readers need.
 #pragma once
 
 #include <cstddef>
@@ -12,17 +12,17 @@
 
 namespace ricochet::detail {
 
-/// File to be read, for error messages.
+/// File that is being read, for error messages.
 struct VtkSource {
     std::filesystem::path path;
-    std::string_view expected;  ///< such as `expected a .vtp file ...`
+    std::string_view expected;  ///< end of messages, for example `expected a .vtp file ...`
 
     /// Throws InputError with the message `PATH: WHAT; EXPECTED`.
     [[noreturn]] void refuse(const std::string& what) const;
 };
 
 struct XmlTag {
-    std::string name;  ///< with a leading slash if it is a closing tag
+    std::string name;  ///< name of the tag, with a leading slash if it is a closing tag
     std::map<std::string, std::string, std::less<>> attributes;
     bool closed = false;    ///< true for <name/>
     std::string_view text;  ///< text between this tag and the next
@@ -46,9 +46,9 @@ private:
     std::size_t at_ = 0;
 };
 
-/// Returns an attribute. Throws if the tag does not have it.
+/// Returns the value of an attribute. Throws InputError if the tag does not have the attribute.
 [[nodiscard]] const std::string& attribute_of(const VtkSource& source, const XmlTag& tag, std::string_view name);
-/// Returns an attribute as a whole number >= 0. Throws if the tag does not have it.
+/// Returns an attribute as a whole number >= 0. Throws InputError if the tag does not have such an attribute.
 [[nodiscard]] std::uint64_t count_of(const VtkSource& source, const XmlTag& tag, std::string_view name);
 
 }  // namespace ricochet::detail

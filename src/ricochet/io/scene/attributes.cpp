@@ -12,7 +12,7 @@
 namespace ricochet::detail {
 namespace {
 
-// A key for appearance in emitters and particles, with its column.
+// A key for the appearance of emitters and particles, with the attribute column that it sets.
 struct Look {
     std::string_view key;
     std::string_view column;
@@ -44,7 +44,7 @@ const AttributeDescription* find_declared(const SimulationSetup& setup, std::str
     return found == setup.attributes.end() ? nullptr : &*found;
 }
 
-// Returns the declared attribute with this name, or a null pointer after reporting an error.
+// Returns the user-declared attribute with this name. Returns a null pointer after reporting an error if there is none.
 const AttributeDescription* declared(const SceneContext& context, const SimulationSetup& setup,
                                      const SourceLocation& location, const std::string& path, const std::string& name) {
     const AttributeDescription* found = find_declared(setup, name);
@@ -77,14 +77,14 @@ std::optional<Vec3> three_numbers(const JsonNode& node) {
     return value;
 }
 
-// Returns a value with this number of components, or nothing if the node is no such value.
+// Returns the value of a node with the given number of components. Returns nothing if the node has another form.
 std::optional<Vec3> value_of(const JsonNode& node, int components) {
     if (components == 3) return three_numbers(node);
     if (const auto number = node.number()) return Vec3{*number, 0.0, 0.0};
     return std::nullopt;
 }
 
-// Returns such a value or a pair [mean, spread] of such values.
+// Returns mean and spread of a node: a single value, or a pair [mean, spread] of values, as in value_of().
 std::optional<AttributeSpread> spread_of(const JsonNode& node, int components) {
     if (const auto value = value_of(node, components)) return AttributeSpread{{}, *value, {}};
     const JsonNode::Array* items = node.array();
@@ -100,13 +100,14 @@ std::string shape_words(int components, bool spread) {
     return spread ? "[x, y, z] or [[x, y, z], [spread, spread, spread]]" : "[x, y, z]";
 }
 
-/// Returns true if the name is one of the columns that tables use for this vector.
+/// Returns true if the name is that of a component of this vector attribute in tables, for example "wind_x".
 bool is_column_of(const AttributeDescription& vector, const std::string& name) {
     return vector.components == 3 && name.size() == vector.name.size() + 2 && name.starts_with(vector.name) &&
            (name.ends_with("_x") || name.ends_with("_y") || name.ends_with("_z"));
 }
 
-/// Returns the reason why an attribute cannot have its name beside the others. Empty if it can.
+/// Returns the reason why an attribute's name is invalid or conflicts with other attributes. Empty if the name is
+/// valid.
 std::string name_problem(const AttributeDescription& attribute, const std::vector<AttributeDescription>& others) {
     if (!is_column_name(attribute.name)) {
         return "the name has control characters, commas or quotes, expected that of a column";
@@ -146,7 +147,7 @@ void build_declared(const SceneContext& context, const NamedObject& named, Simul
     setup.attributes.push_back(std::move(attribute));
 }
 
-/// Declares the material attribute if spheres can have several materials.
+/// Declares the material attribute if the scene has several materials for spheres.
 void declare_material(const SceneContext& context, SimulationSetup& setup) {
     if (!setup.options.particle_contacts || setup.options.particle_contacts->materials.empty()) return;
     if (find_declared(setup, kMaterialAttribute) != nullptr) {
@@ -222,8 +223,8 @@ void read_curves(const SceneContext& context, const SimulationSetup& setup, cons
     read_named_curves(context, setup, view, 3, of_lifetime, emitter);
 }
 
-// Calls use(attribute, value) for every value of the key "attributes". It reports a value if use() returns false,
-// because the value does not have the attribute's shape.
+// Calls use(attribute, value) for every value of the key "attributes". If use() returns false, the value has the wrong
+// number of components and is reported.
 template <class Use>
 void for_each_attribute(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view, bool spread,
                         const Use& use) {

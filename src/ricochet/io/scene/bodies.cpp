@@ -17,7 +17,7 @@
 namespace ricochet::detail {
 namespace {
 
-/// Values of the keys. Some of them must be converted for a BodyDescription.
+/// Values of the keys of a body. Some of them must be converted to members of BodyDescription.
 struct BodyKeys {
     BodyDescription body;
     std::optional<double> mass;
@@ -69,7 +69,7 @@ Fields<BodyKeys> force_fields() {
              "true: the scene's forces act on it like on a point particle with its mass, at its centre of mass."}};
 }
 
-/// Computes the mass moments of all colliders in a frame. Reports colliders without a volume.
+/// Computes the mass moments of all colliders in a frame, and reports colliders without a volume.
 class FrameMoments {
 public:
     FrameMoments(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view)
@@ -95,7 +95,7 @@ private:
         context_.error(view_, why + ", expected closed colliders, or \"mass\", \"center\" and \"inertia\"");
         return std::nullopt;
     }
-    /// Returns the reason why a mesh has no moments, as an addition to a message; nothing for other shapes.
+    /// Returns the reason why a mesh has no moments, as a part of a message; empty for other shapes.
     [[nodiscard]] static std::string_view cause_in(const ColliderShape& shape) {
         const auto* const mesh = std::get_if<MeshShape>(&shape);
         if (mesh == nullptr || !mesh->mesh) return "";
@@ -109,7 +109,8 @@ private:
         const ClosedSurface closed = closed_surface(*shape.mesh);
         if (!closed.closed || !closed.oriented) return std::nullopt;
         const MassMoments found = moments_of(transformed(counted_surface(*shape.mesh), shape.placement));
-        return found.volume < 0.0 ? negative(found) : found;  // its triangles are wound inward
+        // The triangles of a mesh with a negative volume face inward.
+        return found.volume < 0.0 ? negative(found) : found;
     }
     [[nodiscard]] static std::optional<MassMoments> moments(const BallShape& shape) {
         return moments_of_ball(world_from_unit(shape));
@@ -127,7 +128,7 @@ private:
     const ObjectView& view_;
 };
 
-/// Refuses keys that belong to another kind of joint.
+/// Reports keys that belong to another kind of joint.
 void refuse_other_joints_keys(const SceneContext& context, const ObjectView& view, JointKind joint) {
     const std::vector<std::string_view> keys =
         joint == JointKind::free
@@ -142,8 +143,8 @@ void refuse_other_joints_keys(const SceneContext& context, const ObjectView& vie
     }
 }
 
-/// Sets mass, centre and inertia. Returns false after reporting an error. has_volume: set to true if the volume of the
-/// colliders is used.
+/// Sets mass, centre and inertia. Returns false after reporting an error. Sets has_volume to true if a value follows
+/// from the volume of the colliders.
 bool set_mass(const FrameMoments& moments, const std::string& frame, BodyKeys& keys, bool& has_volume) {
     BodyDescription& body = keys.body;
     const bool is_given = keys.mass && keys.center && keys.inertia;
@@ -162,7 +163,7 @@ bool set_mass(const FrameMoments& moments, const std::string& frame, BodyKeys& k
     return true;
 }
 
-/// Refuses frames and materials that cannot be combined with a body.
+/// Reports frames and materials that cannot be combined with a body.
 void refuse_company(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
                     const std::vector<FrameDescription>& frames, const std::string& frame) {
     for (const FrameDescription& other : frames) {
@@ -212,7 +213,7 @@ void build_bodies(const SceneContext& context, SimulationSetup& setup, const std
                           "bodies that impulses move and springs do not go together yet, expected "
                           "a scene without the one or the other");
         }
-        const bool is_refused = context.failed();  // refused values count as absent
+        const bool is_refused = context.failed();  // refused values are treated as absent
         if (view.has("mass") == view.has("density") && !(is_refused && !view.has("mass"))) {
             context.error(view, view.has("mass") ? "found both \"mass\" and \"density\", expected one of them"
                                                  : "found neither \"mass\" nor \"density\", expected one of them");

@@ -19,13 +19,13 @@
 namespace ricochet::detail {
 namespace {
 
-/// Largest product of triangles and test points. Local: a limit of the cost of a warning.
+/// Largest product of the numbers of triangles and test points. Local: it limits the cost of a warning.
 constexpr double kMostSolidAngles = 1e7;
 constexpr double kMostPoints = 4096;
 constexpr double kLeastPoints = 64;
 
-/// Share of the points inside above which points inside more than once are reported. Local, because it decides only
-/// about a warning.
+/// Largest share of points in overlaps, among all points inside, that is not reported. Local, because it affects only a
+/// warning.
 constexpr double kNegligibleShare = 0.01;
 
 /// One closed collider in the coordinates of its frame.
@@ -46,7 +46,7 @@ public:
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] const Box3& box() const { return box_; }
     [[nodiscard]] std::size_t triangles() const { return mesh_.triangles.size(); }
-    /// Returns how many times the collider encloses a point.
+    /// Returns the number of times that the collider encloses a point.
     [[nodiscard]] int count(const Vec3& p) const {
         if (!box_.contains(p)) return 0;
         if (queries_) return queries_->is_inside(p) ? 1 : 0;
@@ -73,12 +73,13 @@ private:
     Box3 box_;
 };
 
-/// Results of the test points.
+/// Counts of the test points, and the first overlap found.
 struct Shares {
-    std::size_t inside = 0;  ///< points inside a collider
-    std::size_t again = 0;   ///< points inside more than once
-    std::string first;       ///< a collider around the first of these points
-    std::string second;      ///< another collider around it; empty if `first` alone encloses it several times
+    std::size_t inside = 0;  ///< number of points inside at least one collider
+    std::size_t again = 0;   ///< number of points that colliders enclose more than once
+    std::string first;       ///< name of a collider around the first point that is enclosed more than once
+    /// Name of another collider around this point; empty if `first` alone encloses the point several times.
+    std::string second;
 };
 
 void look_at(const Vec3& p, const std::vector<ClosedPart>& parts, Shares& shares) {

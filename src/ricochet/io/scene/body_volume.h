@@ -1,5 +1,5 @@
 /// \file
-/// Test for colliders of a body that overlap. A mass from a density would count the overlap twice.
+/// Test for overlapping colliders of a body. A mass computed from a density would include an overlap twice.
 #pragma once
 
 #include <optional>
@@ -9,9 +9,9 @@
 
 namespace ricochet::detail {
 
-/// Returns a message if closed colliders in a frame overlap, or if one of them is a mesh that crosses itself. Returns
-/// nothing otherwise. It tests points drawn in the bounding box, always the same ones. It can miss overlaps below about
-/// one hundredth of the volume inside.
+/// Returns a message if closed colliders in a frame overlap, or if a mesh among them intersects itself. Otherwise
+/// returns nothing. The test uses random points in the bounding box, which are the same in every run. Overlaps below
+/// about one hundredth of the enclosed volume may be missed.
 [[nodiscard]] std::optional<std::string> doubly_filled(const SimulationSetup& setup, const std::string& frame);
 
 }  // namespace ricochet::detail

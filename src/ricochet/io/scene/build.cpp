@@ -1,4 +1,4 @@
-// The scene as a whole, and its plain settings: simulation, bounds, cameras and output.
+// Builds the whole scene, and its simple settings: simulation, bounds, cameras and output.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -191,7 +191,8 @@ void build_simulation(const SceneContext& context, SimulationOptions& options) {
     }
 }
 
-// Reads first-order motion: sets the flow that carries the particles, and refuses settings that do not apply.
+// Reads the settings of first-order motion. Sets the flow that carries the particles, and reports settings that do not
+// apply.
 void build_motion(const SceneContext& context, const ForceBuilder& forces, SimulationOptions& options) {
     const ObjectView view = context.root().object("simulation");
     const FlowPointer flow = forces.flow_at(view);
@@ -224,7 +225,8 @@ void build_motion(const SceneContext& context, const ForceBuilder& forces, Simul
     }
 }
 
-/// Warns of wall settings that do nothing, because particles that a flow carries have no momentum to absorb or share.
+/// Warns of wall settings that have no effect if a flow carries the particles. Such particles have no momentum that
+/// walls could absorb or share.
 void warn_of_walls_along_flows(const SceneContext& context, const SimulationSetup& setup) {
     if (setup.options.flow == nullptr) return;
     for (const NamedObject& named : context.root().named_objects("materials")) {
@@ -272,7 +274,7 @@ Fields<Box3> box_fields(std::string_view upper_meaning) {
             {"upper", &Box3::upper, kCoordinate, "m", upper_meaning, kRequired}};
 }
 
-/// Returns the groups of the colliders' triangles. Errors of the mesh files have been reported before.
+/// Returns the triangle groups of every collider. Errors of the mesh files have already been reported.
 static std::vector<TriangleGroups> groups_of_colliders(SceneContext& context) {
     std::vector<TriangleGroups> groups;
     for (const ObjectView& view : context.objects("colliders")) {

@@ -1,4 +1,4 @@
-// Check of a document against the tables of keys.
+// Checks a document against the tables of keys.
 
 #include <fmt/format.h>
 
@@ -17,7 +17,8 @@
 namespace ricochet::detail {
 namespace {
 
-// A direction must survive normalization: its square must neither vanish nor overflow. Local: a limit of input values.
+// Smallest magnitude of a direction. A direction must be long enough that its square does not underflow in the
+// normalization. Local: a limit of input values.
 constexpr double kShortestDirection = 1e-75;
 
 using Problem = std::optional<std::string>;
@@ -28,7 +29,8 @@ std::string found_expected(const JsonNode& node, const KeySpec& key) {
 
 std::string number_text(double x) { return fmt::format("{}", x); }
 
-// Returns the message for a number out of range. It names the largest coordinate only if the number exceeds that.
+// Returns the message for a number out of range. The message contains the largest coordinate only if the number exceeds
+// it.
 std::string out_of_range(const std::string& found, const KeySpec& key, double value) {
     if (std::fabs(value) > kLargestCoordinate && std::fabs(key.range.upper) == kLargestCoordinate) {
         return fmt::format("found {}, expected at most {} in magnitude", found, kLargestCoordinate);
@@ -60,7 +62,7 @@ Problem choice_problem(const JsonNode& node, const KeySpec& key) {
     return found_expected(node, key) + (meant.empty() ? "" : "; " + meant);
 }
 
-// Sets the components from a list of three numbers. Returns the problem if the node is no such list.
+// Sets the components from a list of three numbers. Returns the problem if the node is not a list of three numbers.
 Problem components_problem(const JsonNode& node, const KeySpec& key, Vec3& components) {
     const JsonNode::Array* items = node.array();
     if (items == nullptr || items->size() != 3) return found_expected(node, key);
@@ -302,7 +304,8 @@ private:
         for (JsonMember& member : *members) {
             if (member.key.empty())
                 diagnostics_.error(member.key_location, path, "found an empty name, expected a name");
-            // Names in a mesh file can have any characters. Names in a scene become columns and lines of reports.
+            // Names from a mesh file can have any characters. Names in a scene appear as columns and lines of reports,
+            // so control characters are not allowed.
             if (key.type != ValueType::text_table && has_control_character(member.key)) {
                 diagnostics_.error(member.key_location, path,
                                    fmt::format("the name \"{}\" contains a control character, expected plain text",
@@ -321,7 +324,7 @@ private:
         }
     }
 
-    // Returns the variant that "type" names, after reporting its errors.
+    // Returns the variant that the key "type" selects, and reports errors of this key.
     const Variant* checked_variant(JsonNode& node, const ObjectSpec& spec, const std::string& path) {
         correct_type_key(node, spec, path);
         KeySpec key{.name = "type", .type = ValueType::choice, .description = "", .required = true};
@@ -335,7 +338,8 @@ private:
         return variant_of(node, spec);
     }
 
-    // Corrects "type" before all other keys, because the other known names depend on it.
+    // Corrects a misspelt key "type" before all other keys, because the known names of the other keys depend on the
+    // type.
     void correct_type_key(JsonNode& node, const ObjectSpec& spec, const std::string& path) {
         if (node.find("type") != nullptr) return;
         const std::vector<std::string_view> known = all_names(spec);
@@ -360,7 +364,7 @@ private:
         return names;
     }
 
-    // Returns the nearest known names. Names that the object has already are left out if there are others.
+    // Returns the known names nearest to a word. Names that the object already has are omitted if other names remain.
     static std::vector<std::string_view> nearest_absent(const std::string& word,
                                                         const std::vector<std::string_view>& known,
                                                         const JsonNode& node) {
@@ -372,7 +376,7 @@ private:
         return nearest;
     }
 
-    // Returns the key of an object below that has a key of this name, for example simulation.duration for duration.
+    // Returns the path to a key with this name in a nested object, for example simulation.duration for duration.
     static std::optional<std::string> key_below(std::string_view name, const ObjectSpec& spec) {
         for (const KeySpec& key : spec.keys) {
             if (key.type != ValueType::object || key.content == nullptr) continue;
@@ -388,7 +392,7 @@ private:
         diagnostics_.error(member.key_location, path_of_key(path, member.key), "unknown key; " + help);
     }
 
-    // Checks the names of keys in an object without a type. Its values cannot be checked.
+    // Checks only the names of keys in an object without a valid type. The values of such an object cannot be checked.
     void check_only_names(JsonNode& node, const ObjectSpec& spec, const std::string& path) {
         const std::vector<std::string_view> known = all_names(spec);
         for (const JsonMember& member : *node.object()) {
@@ -421,7 +425,7 @@ private:
         for (const KeySpec* key : keys_of(spec, variant)) check_company(node, *key, path, excused);
     }
 
-    // Reports an unknown key. If only one name is possible, gives the key that name.
+    // Reports a key if it is unknown. If only one correction is possible, the key gets the corrected name.
     void correct_key(JsonMember& member, const JsonNode& node, const ObjectSpec& spec, const Variant* variant,
                      const std::string& path, std::set<std::string_view>& excused) {
         if (find_key(spec, variant, member.key) != nullptr) return;
@@ -440,7 +444,7 @@ private:
         if (nearest.size() == 1 && node.find(nearest[0]) == nullptr) member.key = nearest[0];
     }
 
-    // Returns known names that end with the word, for example particle_size for size.
+    // Returns the known names that end with "_" and the word, for example particle_size for size.
     static std::vector<std::string_view> longer_names(const std::string& word,
                                                       const std::vector<std::string_view>& known) {
         std::vector<std::string_view> longer;

@@ -1,4 +1,4 @@
-// Emitters of type child: particles that are born of particles, and the clouds that they can form.
+// Emitters of type child: particles that are born from other particles, and the clouds that they can form.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace ricochet::detail {
 namespace {
 
-// Keys of an emitter of type child. The number of its parent is found when all emitters are known.
+// Keys of an emitter of type child. The name of the parent is resolved to a number when all emitters are known.
 struct ChildKeys : ParentRule {
     std::string parent;
 };
@@ -50,7 +50,7 @@ void find_parents(const SceneContext& context, SimulationSetup& setup) {
         const auto found = std::find(names.begin(), names.end(), name);
         if (found == names.end()) {
             std::vector<std::string_view> others =
-                names;  // an emitter can be its own parent, but is no useful suggestion
+                names;  // an emitter can be its own parent, but its own name is not a useful suggestion
             others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
             context.error(views[k], "parent", unknown_name("emitter", name, others.empty() ? names : others));
         } else {
@@ -59,7 +59,8 @@ void find_parents(const SceneContext& context, SimulationSetup& setup) {
     }
 }
 
-// Warns of emitters whose ancestors lead back to themselves. They wait for each other and never emit.
+// Warns of emitters that are among their own ancestors. An emitter in such a cycle needs parents from the cycle, so
+// none of its emitters ever emits.
 void warn_of_circles(const SceneContext& context, const SimulationSetup& setup) {
     const std::vector<ObjectView> views = context.objects("emitters");
     for (std::size_t k = 0; k < views.size() && !context.failed(); ++k) {
@@ -73,7 +74,7 @@ void warn_of_circles(const SceneContext& context, const SimulationSetup& setup) 
     }
 }
 
-// Reports two emitters that share out the same parents at the same event.
+// Reports two emitters that distribute the mass of the same parents at the same event.
 void check_shares(const SceneContext& context, const SimulationSetup& setup) {
     const std::vector<ObjectView> views = context.objects("emitters");
     std::set<std::pair<std::uint32_t, BirthEvent>> taken;
@@ -169,7 +170,7 @@ Variant child_variant() {
           &cloud_spec(), Without{"they fly freely"}}});
 }
 
-// Returns the rule of an emitter of type child. The number of the parent is found when all emitters are known.
+// Returns the rule of an emitter of type child. check_parents() sets the number of the parent.
 ParentRule rule_of(const SceneContext& context, const ObjectView& view, const EmitterDescription& emitter) {
     ParentRule rule = view.read<ChildKeys>();
     if (!view.has("share")) rule.share = rule.on == BirthEvent::impact && !rule.cloud;

@@ -35,7 +35,7 @@ Fields<MeshShape> mesh_fields() {
            &deformation_spec(), Without{"it keeps its shape"}}}});
 }
 
-// Returns a variant with the dimensions of a shape and its placement.
+// Returns a variant with the keys for the dimensions of a shape and for its placement.
 template <class Shape>
 Variant placed_variant(std::string_view name, std::string_view description, const Fields<Shape>& measures) {
     return variant(name, description, joined<Shape>({measures, placement_fields(&Shape::placement)}));
@@ -110,8 +110,8 @@ private:
                                        "diffuse reflection");
     }
 
-    // Returns the index of a collider's material. Colliders without one share a perfect material, which follows the
-    // scene's materials.
+    // Returns the index of a collider's material. All colliders without a material share a perfect one, which is
+    // appended to the scene's materials.
     std::uint32_t material_of(const ObjectView& view) {
         if (!view.has("material")) {
             if (setup_.materials.size() == used_.size()) setup_.materials.emplace_back();
@@ -134,7 +134,8 @@ private:
         return 0;
     }
 
-    // Returns the material of every triangle. Empty if all triangles have the collider's own material.
+    // Returns the material index of every triangle. The list is empty if all triangles have the collider's own
+    // material. otherwise: index of the collider's own material.
     std::vector<std::uint32_t> triangle_materials(const ObjectView& view, std::uint32_t otherwise) {
         const JsonNode::Object* members = view.node("group_materials").object();
         const MeshGroups* groups = context_.load_groups(view);
@@ -150,7 +151,7 @@ private:
             if (std::find(known.begin(), known.end(), member.key) == known.end()) {
                 context_.diagnostics().error(member.key_location, path, unknown_group(member.key, known));
             }
-            if (member.value.text() == nullptr) continue;  // refused already
+            if (member.value.text() == nullptr) continue;  // the text has already been reported
             named.materials[member.key] = index_of_material(*member.value.text(), member.value.location, path);
         }
         TriangleMaterials result = materials_by_group(*groups, named);
@@ -177,7 +178,7 @@ private:
                            some.size() < known.size() ? fmt::format(" and {} more", known.size() - some.size()) : "");
     }
 
-    // Warns of names that no triangle takes its material from, because other names of its faces have priority.
+    // Warns of group names that select no triangle's material, because other names of the same faces have priority.
     void warn_about_unused_groups(const ObjectView& view, const JsonNode::Object& members,
                                   const std::vector<std::string_view>& not_used,
                                   const std::vector<std::string_view>& known) {
@@ -192,7 +193,7 @@ private:
     }
 
     ColliderShape shape_of(const ObjectView& view, std::uint32_t material) {
-        if (view.type().empty()) return PlaneShape{};  // refused already
+        if (view.type().empty()) return PlaneShape{};  // the type has already been reported
         if (view.type() == "plane") return view.read<PlaneShape>();
         if (view.type() == "sphere") return view.read<BallShape>();
         if (view.type() == "cylinder") return view.read<CylinderShape>();
@@ -205,7 +206,7 @@ private:
         return mesh;
     }
 
-    // Refuses keys and responses that cannot be combined with a deforming mesh.
+    // Reports keys and responses that cannot be combined with a deforming mesh.
     void require_exact(const ObjectView& view) {
         for (const char* key : {"frame", "motion"}) {
             if (view.has(key)) context_.error(view, key, "a mesh that deforms stands in the world, expected none");
@@ -220,8 +221,8 @@ private:
         }
     }
 
-    // Returns the name of the collider's frame. Its own keys make one more frame. A scaled collider becomes a deforming
-    // mesh.
+    // Returns the name of the collider's frame. If the collider has motion keys of its own, a frame is added for them.
+    // A collider that is scaled over time becomes a deforming mesh.
     std::string frame_of(const ObjectView& view, ColliderDescription& collider) {
         if (view.has("deformation")) {
             require_exact(view);
@@ -262,7 +263,7 @@ private:
     SimulationSetup& setup_;
     std::vector<FrameDescription>& frames_;
     FrameTree scene_frames_;
-    std::vector<bool> used_;  // one per material of the scene
+    std::vector<bool> used_;  // flag for each material of the scene: true if it is used
 };
 
 }  // namespace

@@ -111,7 +111,8 @@ std::string SceneContext::unique_name(const ObjectView& view, std::size_t index,
 }
 
 std::string unknown_name(std::string_view kind, const std::string& name, const std::vector<std::string_view>& all) {
-    // A scene can have many names and many errors, so each error compares with a limited number of names.
+    // A scene can have many names and many errors. The cost is limited, because each error is compared with a limited
+    // number of names.
     constexpr std::size_t kMostNames = 200;
     const std::vector<std::string_view> known(
         all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), kMostNames)));

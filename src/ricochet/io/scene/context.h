@@ -1,5 +1,5 @@
 /// \file
-/// The parts of a scene: their tables of keys, the functions that build them, and helpers that they share.
+/// Parts of a scene: their tables of keys, the functions that build them, and shared helper functions.
 #pragma once
 
 #include <algorithm>
@@ -28,17 +28,17 @@
 
 namespace ricochet::detail {
 
-/// The document, the folder of its files, and the diagnostics that errors go to.
+/// The document, the folder of its files, and the diagnostics that collect its errors.
 class SceneContext {
 public:
     SceneContext(const JsonNode& root, std::filesystem::path folder, Diagnostics& diagnostics);
 
     [[nodiscard]] const ObjectView& root() const { return root_; }
     [[nodiscard]] Diagnostics& diagnostics() const { return diagnostics_; }
-    /// Returns true if an error has been reported. Defaults may then replace refused values.
+    /// Returns true if an error has been reported. Refused values may then have been replaced by defaults.
     [[nodiscard]] bool failed() const { return diagnostics_.failed(); }
 
-    /// Returns the objects of one of the scene's lists, with their paths for messages.
+    /// Returns the objects of a list of the scene, with their paths for messages.
     [[nodiscard]] std::vector<ObjectView> objects(std::string_view list) const { return root_.objects(list); }
 
     void error(const ObjectView& view, std::string_view key, const std::string& what) const;
@@ -46,36 +46,38 @@ public:
     void warn(const ObjectView& view, std::string_view key, const std::string& what) const;
     void warn(const ObjectView& view, const std::string& what) const;
 
-    /// Returns the path that the key "file" names, and adds it to files().
+    /// Returns the path given by the key "file", and adds it to files().
     [[nodiscard]] std::filesystem::path file_of(const ObjectView& view) const;
-    /// Returns the path of a file with this name, which is relative to the scene's folder.
+    /// Returns the path of a file. name: path relative to the scene's folder.
     [[nodiscard]] std::filesystem::path path_of_file(const std::string& name) const {
         return (folder_ / name).lexically_normal();
     }
     /// Adds a path to files().
     void note(const std::filesystem::path& path) const { files_.insert(path); }
-    /// Adds memory that the scene itself occupies, in bytes.
+    /// Adds the size of memory that the scene description occupies, in bytes.
     void add_memory(double bytes) const { memory_bytes_ += bytes; }
-    /// Returns the sum of the memory that was added, in bytes.
+    /// Returns the sum of the sizes from add_memory(), in bytes.
     [[nodiscard]] double memory_bytes() const { return memory_bytes_; }
-    /// Returns every path that was added, each once.
+    /// Returns all added paths, without duplicates.
     [[nodiscard]] std::vector<std::filesystem::path> files() const { return {files_.begin(), files_.end()}; }
-    /// Loads the mesh that the key "file" names, with the up axis that "up" selects. Returns a null pointer if there is
-    /// no such mesh, after reporting the reason.
+    /// Loads the mesh of the key "file", with the up axis of the key "up". Returns a null pointer after reporting an
+    /// error if the mesh cannot be loaded.
     [[nodiscard]] std::shared_ptr<const TriangleMesh> load_mesh(const ObjectView& view);
-    /// Returns a mesh in world coordinates. Returns a null pointer after reporting a vertex out of range for this key.
+    /// Returns a mesh with its placement applied, in world coordinates. If a vertex is out of range, reports it at the
+    /// key and returns a null pointer.
     [[nodiscard]] std::shared_ptr<const TriangleMesh> placed_mesh(const ObjectView& view, std::string_view key,
                                                                   const TriangleMesh& mesh,
                                                                   const Placement& placement) const;
-    /// Returns the groups of the mesh that the key "file" names, or a null pointer if load_mesh() returns one.
+    /// Returns the groups of the mesh of the key "file". Returns a null pointer if load_mesh() does.
     [[nodiscard]] const MeshGroups* load_groups(const ObjectView& view);
 
-    /// Returns the given name, or one made from the type and the index in the list. Reports a name that is taken.
+    /// Returns the object's name, or a default name made from its kind and its index in the list. Reports a name that
+    /// is already in `taken`.
     [[nodiscard]] std::string unique_name(const ObjectView& view, std::size_t index, std::string_view kind,
                                           std::set<std::string>& taken) const;
 
 private:
-    /// Warns of an implausible size of a mesh, unless the scene states a scale.
+    /// Warns if the size of a mesh is implausible, unless the object has a scale.
     void warn_of_size(const ObjectView& view, const TriangleMesh& mesh, const std::filesystem::path& path) const;
 
     ObjectView root_;
@@ -105,7 +107,7 @@ private:
 [[nodiscard]] const ObjectSpec& body_spec();
 [[nodiscard]] const ObjectSpec& emitter_spec();
 [[nodiscard]] const ObjectSpec& particle_spec();
-/// Table of {"file": ...}, which can replace a list of particles.
+/// Table of the object {"file": ...}, which can replace a list of particles.
 [[nodiscard]] const ObjectSpec& particle_file_spec();
 [[nodiscard]] const ObjectSpec& springs_spec();
 [[nodiscard]] const ObjectSpec& counter_spec();
@@ -114,22 +116,23 @@ private:
 [[nodiscard]] const ObjectSpec& collider_looks_spec();
 /// Table of a declared attribute: `{"components": ..., "default": ...}`.
 [[nodiscard]] const ObjectSpec& attribute_spec();
-/// Returns the keys of {"lower": ..., "upper": ...}, which set a Box3.
+/// Returns the keys of an object {"lower": ..., "upper": ...} that describes a Box3.
 [[nodiscard]] Fields<Box3> box_fields(std::string_view upper_meaning);
 
 inline constexpr Range kFieldOfView = between(1.0, 170.0);
 inline constexpr std::string_view kFieldOfViewMeaning = "Angle from the lower to the upper edge.";
-/// Reports a camera whose position is its target. The view has the keys of the camera.
+/// Reports a camera whose position equals its target. view: object with the keys of the camera.
 void refuse_camera_on_target(const SceneContext& context, const ObjectView& view);
 
-/// Members of a placement or a frame that a rotation about an axis sets.
+/// Members of a placement or a frame that the key of a rotation sets.
 struct RotationTarget {
     Vec3& axis;
     double& degrees;
 };
 [[nodiscard]] const ObjectSpec& rotation_spec();
 
-/// Returns the keys position, rotation and scale, which set a Placement member. needs: key that must be present too.
+/// Returns the keys position, rotation and scale, which set a member of type Placement. needs: key that must also be
+/// present.
 template <class Struct>
 [[nodiscard]] Fields<Struct> placement_fields(Placement Struct::*placement, Needs needs = {}) {
     return {
@@ -146,7 +149,7 @@ template <class Struct>
 
 inline constexpr std::string_view kMeshFileMeaning = "Mesh file: OBJ, PLY, STL, OFF or glTF (.gltf, .glb).";
 
-/// Returns the key for the axis of a mesh file that points up, for load_mesh().
+/// Returns the key for the upward axis of a mesh file, for load_mesh().
 template <class Struct>
 [[nodiscard]] Field<Struct> up_field(Needs needs = {}) {
     return {"up",
@@ -161,28 +164,28 @@ template <class Struct>
 /// Returns the value of the key "up" of an object.
 [[nodiscard]] MeshUp up_of(const ObjectView& view);
 
-/// Table of {"interpolation": ..., "keys": [{"time": ..., "value": NUMBER}], "ends": ...}. The values have the unit of
-/// the key that contains the curve.
+/// Table of a curve {"interpolation": ..., "keys": [{"time": ..., "value": NUMBER}], "ends": ...}. The values have the
+/// unit of the key that contains the curve.
 [[nodiscard]] const ObjectSpec& number_curve_spec();
 /// Table of a curve with "value": [x, y, z].
 [[nodiscard]] const ObjectSpec& vector_curve_spec();
-/// Table of a curve with "value": a factor above 0, or [x, y, z] of such factors.
+/// Table of a curve of scale factors. "value" is a factor above 0, or [x, y, z] with three such factors.
 [[nodiscard]] const ObjectSpec& scale_curve_spec();
-/// Returns the curve of an object of number_curve_spec(). After an error, which it reports with the object's path
-/// ("frames.arm.motions[0]"), it returns a constant zero.
+/// Returns the curve of an object of number_curve_spec(). An error is reported with the object's path, for example
+/// "frames.arm.motions[0]". The result is then the constant 0.
 [[nodiscard]] KeyedCurve<double> number_curve_of(const ObjectView& view, Diagnostics& diagnostics);
 [[nodiscard]] KeyedCurve<Vec3> vector_curve_of(const ObjectView& view, Diagnostics& diagnostics);
 
 /// Returns the keys of an emitter for appearance and attributes, for example color and over_life. read_looks() reads
-/// them.
+/// their values.
 [[nodiscard]] std::vector<KeySpec> emitter_look_keys();
-/// Returns the keys of an explicit particle for appearance and attributes. particle_values() reads them.
+/// Returns the keys of an explicit particle for appearance and attributes. particle_values() reads their values.
 [[nodiscard]] std::vector<KeySpec> particle_look_keys();
 
 // Functions that build the parts of a scene.
 
-/// Builds the scene from a document that check_scene() has checked. Reports errors that only show here: unknown names,
-/// faults of files, and values that contradict each other. folder: start of relative paths.
+/// Builds the scene from a document that check_scene() has checked. Reports the errors that check_scene() cannot find:
+/// unknown names, faults of files, and contradictory values. folder: folder to which paths are relative.
 [[nodiscard]] SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& folder,
                                            Diagnostics& diagnostics);
 
@@ -191,9 +194,9 @@ class ForceBuilder {
 public:
     explicit ForceBuilder(const SceneContext& context);
 
-    /// Returns the valid forces and reports the errors of the others.
+    /// Returns all valid forces. Reports the errors of invalid forces.
     [[nodiscard]] std::vector<std::unique_ptr<Force>> forces() const;
-    /// Returns the flow that the key "flow" describes or names. Returns a null pointer if it is absent or invalid.
+    /// Returns the flow that the key "flow" describes or names. Returns a null pointer if the key is absent or invalid.
     [[nodiscard]] FlowPointer flow_at(const ObjectView& view) const;
 
 private:
@@ -206,109 +209,116 @@ private:
 
 /// Table of the key "deformation" of mesh colliders: positions of the vertices over time.
 [[nodiscard]] const ObjectSpec& deformation_spec();
-/// Returns the motion that a collider's key "deformation" describes. Null pointer if it is absent or invalid.
+/// Returns the motion that a collider's key "deformation" describes. Returns a null pointer if the key is absent or
+/// invalid.
 [[nodiscard]] std::shared_ptr<const MeshMotion> deformation_of(SceneContext& context, const ObjectView& collider);
 
-/// Turns a collider into a deforming mesh if its frame or a parent frame is scaled. `own` is the collider's own frame,
-/// which is not in `frames`. Returns false if no frame is scaled. Reports shapes that cannot be scaled.
+/// Converts a collider to a deforming mesh if its frame or a parent of this frame is scaled. Returns false if no frame
+/// is scaled. Reports shapes that cannot be scaled. own: frame defined by the collider's own keys, which is not in
+/// `frames`.
 [[nodiscard]] bool stretch(SceneContext& context, const ObjectView& view, const SimulationOptions& options,
                            const FrameTree& frames, const FrameDescription& own, ColliderDescription& collider);
 
-/// Builds the colliders. frames: the frames of the scene. Adds the frames that colliders define by their own keys.
+/// Builds the colliders. frames: frames of the scene, to which frames from the colliders' own keys are added.
 void build_colliders(SceneContext& context, SimulationSetup& setup, std::vector<FrameDescription>& frames);
-/// Builds the bodies among the frames. Their mass can come from the colliders in the frame.
+/// Builds the bodies of all driven frames. The mass of a body can follow from the colliders in its frame.
 void build_bodies(const SceneContext& context, SimulationSetup& setup, const std::vector<FrameDescription>& frames);
 /// Builds the declared attributes, and the appearance attributes that emitters and explicit particles use. Reports
 /// invalid names and defaults.
 void build_attributes(const SceneContext& context, SimulationSetup& setup);
-/// Returns the scene's frames. If errors have been reported, the frames have no parents.
+/// Returns the scene's frames. After an error, the returned frames have no parents.
 [[nodiscard]] std::vector<FrameDescription> frames_of(const SceneContext& context);
 /// Table of the poses in a collider's key "motion".
 [[nodiscard]] const ObjectSpec& key_pose_spec();
 /// Returns a frame that moves through poses.
 [[nodiscard]] FrameDescription frame_through(const std::vector<ObjectView>& keys, Diagnostics& diagnostics);
-/// Returns true if the key "frame" names one of these frames. Reports an unknown name.
+/// Returns true if the key "frame" contains the name of one of these frames. Reports an unknown name.
 [[nodiscard]] bool is_frame_named(const SceneContext& context, const ObjectView& view, const FrameTree& frames);
-/// Builds the emitters. Needs the frames and colliders of the setup.
+/// Builds the emitters. Must run after the frames and colliders of the setup are built.
 void build_emitters(SceneContext& context, SimulationSetup& setup);
 /// Returns the emitter shapes that need no file, with their keys.
 [[nodiscard]] std::vector<Variant> simple_shapes();
-/// Returns such a shape, or a point if it was refused.
+/// Returns a shape of simple_shapes(), or a point if the shape was refused.
 [[nodiscard]] EmitterShape simple_shape_of(const ObjectView& view);
 /// Table of the key "cloud" of an emitter of type child.
 [[nodiscard]] const ObjectSpec& cloud_spec();
-/// Returns the keys of an emitter whose particles are born of other particles.
+/// Returns the keys of an emitter of type child, whose particles are born from other particles.
 [[nodiscard]] Variant child_variant();
-/// Returns the rule of such an emitter. check_parents() sets the number of the parent, when all emitters are known.
+/// Returns the rule of an emitter of type child. check_parents() sets the number of the parent when all emitters are
+/// known.
 [[nodiscard]] ParentRule rule_of(const SceneContext& context, const ObjectView& view,
                                  const EmitterDescription& emitter);
-/// Finds the parent emitters, and reports unknown names, cycles and parents whose mass is distributed twice.
+/// Sets the parents of emitters of type child. Reports unknown names and parents whose mass is distributed twice. Warns
+/// of cycles.
 void check_parents(const SceneContext& context, SimulationSetup& setup);
-/// Refuses settings that clouds cannot be combined with. Needs all other parts that they depend on.
+/// Reports settings that cannot be combined with clouds. Must run after all parts that clouds depend on.
 void check_clouds(const SceneContext& context, const SimulationSetup& setup);
 /// Sets the attributes and curves of an emitter. Reports undeclared attributes and wrong numbers of components.
 void read_looks(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
                 EmitterDescription& emitter);
 void build_particles(SceneContext& context, SimulationSetup& setup);
-/// Reads the settings for contacts between spheres. Runs before build_attributes(), which needs their materials.
+/// Reads the settings for contacts between spheres. Must run before build_attributes(), which needs the materials of
+/// spheres.
 void read_particle_contacts(const SceneContext& context, SimulationOptions& options);
-/// Refuses settings that contacts between spheres cannot be combined with. Runs after build_springs().
+/// Reports settings that cannot be combined with contacts between spheres. Must run after build_springs().
 void check_particle_contacts(const SceneContext& context, const SimulationSetup& setup);
 /// Returns the value of kMaterialAttribute for the key "material" of an emitter or a particle. Returns nothing if the
 /// key is absent, or after reporting an error.
 [[nodiscard]] std::optional<AttributeValue> material_of(const SceneContext& context, const SimulationSetup& setup,
                                                         const ObjectView& view);
-/// Builds the forces between particles. Runs after the attributes, bodies and emitters.
+/// Builds the forces between particles. Must run after the attributes, bodies and emitters are built.
 void build_particle_forces(const SceneContext& context, SimulationSetup& setup);
-/// Builds the heat settings. Runs after all other parts of the setup.
+/// Builds the heat settings. Must run after all other parts of the setup are built.
 void build_heat(const SceneContext& context, const ForceBuilder& forces, SimulationSetup& setup);
-/// Returns the attribute values of an explicit particle, one per column. Empty if the scene has no columns.
+/// Returns the attribute values of an explicit particle, one per column. The list is empty if the scene has no columns.
 [[nodiscard]] std::vector<AttributeValue> particle_values(const SceneContext& context, const SimulationSetup& setup,
                                                           const ObjectView& view);
 /// Builds the springs. Appends the particles of ropes, chains and cloth to the particles of the scene.
 void build_springs(SceneContext& context, SimulationSetup& setup);
-/// Builds the counters. Reports names that are taken.
+/// Builds the counters. Reports duplicate names.
 void build_counters(const SceneContext& context, SimulationSetup& setup);
-/// Sets the memory that a run needs. If it exceeds the limit of this process, reports the part that needs most. Warns
-/// of bursts above the largest population.
+/// Sets the estimated memory of a run. If it exceeds the limit of this process, reports the part of the scene that
+/// needs most memory. Warns of bursts that exceed the largest number of particles.
 void check_memory(const SceneContext& context, SceneDescription& scene);
 /// Table of the key "drawing" of an emitter.
 [[nodiscard]] const ObjectSpec& drawing_spec();
-/// Returns the number, from 1, of the drawing that an emitter with this key adds to the scene.
+/// Returns the number of the drawing that an emitter with the key "drawing" adds to the scene, counted from 1.
 [[nodiscard]] std::size_t drawing_number(const SceneContext& context, const ObjectView& emitter);
-/// Builds the camera, the picture settings and the drawings of emitters. Runs after the frames.
+/// Builds the camera, the picture settings and the drawings of emitters. Must run after the frames are built.
 void build_pictures(const SceneContext& context, SceneDescription& scene);
-/// Warns of ids in a list that no particle of the setup has or will have.
+/// Warns of ids in a list if no particle has or will have them.
 void warn_of_unknown_ids(const SceneContext& context, const ObjectView& view, const SimulationSetup& setup,
                          std::span<const std::uint64_t> ids);
 /// Warns of unknown ids in the scene's forces on single particles.
 void warn_of_forces_on_nobody(const SceneContext& context, const SimulationSetup& setup);
-/// Warns of forces that grow with the particle radius, if all particles are points.
+/// Warns of forces that depend on the particle radius if all particles are points, because such forces are zero.
 void warn_of_forces_without_radius(const SceneContext& context, const SimulationSetup& setup);
 
 // Particle tables.
 
-/// Contents of a particle table, with its errors.
+/// Contents of a particle table, and the errors found in it.
 struct ParticleTable {
     std::vector<Particle> particles;
-    std::vector<std::string> errors;               ///< "start.csv:12: found ..., expected ..."; the first few
-    std::vector<AttributeDescription> attributes;  ///< the declared ones, and appearance attributes of the table
-    std::vector<std::string> unused_columns;       ///< columns of a final state that mean nothing at a start
+    std::vector<std::string> errors;  ///< first errors, for example "start.csv:12: found ..., expected ..."
+    std::vector<AttributeDescription> attributes;  ///< declared attributes, and the table's attributes for appearance
+    std::vector<std::string> unused_columns;  ///< columns of a final state that have no meaning at the start of a run
 };
 
-/// Parses comma-separated values: a header line that names the columns, then one line per particle. The columns x, y
-/// and z are required. vx, vy, vz, mass, radius, spin_x, spin_y, spin_z and lifetime are optional, in any order. More
-/// columns are declared attributes (name, or name_x, name_y, name_z) and appearance. The final state that a run writes
-/// can be read back. Never throws for bad contents.
+/// Parses comma-separated values: a header line with the names of the columns, then one line per particle. The columns
+/// x, y and z are required. The columns vx, vy, vz, mass, radius, spin_x, spin_y, spin_z and lifetime are optional.
+/// Columns can be in any order. Further columns are declared attributes (name, or name_x, name_y, name_z) and
+/// attributes for appearance. The final state that a run writes is a valid table. Faults of the contents are returned
+/// as errors, never thrown.
 [[nodiscard]] ParticleTable parse_particle_table(std::string_view text, const std::string& name,
                                                  std::vector<AttributeDescription> declared = {});
-/// Reads a .csv file. Throws InputError if it cannot be read or has another ending.
+/// Reads a .csv file. Throws InputError if the file cannot be read or has another extension.
 [[nodiscard]] ParticleTable read_particle_table(const std::filesystem::path& path,
                                                 std::vector<AttributeDescription> declared = {});
 
-// Flows and forces by "type": the keys and the maker of each type, and table lines that several types share.
+// Flows and forces by "type": the keys of each type, the function that makes the object, and table lines that several
+// types share.
 
-/// Keys of a type, and the function that makes the object from them.
+/// Keys of a type, and the function that makes an object of this type from a view.
 template <class Made, class... Others>
 struct Law {
     Variant variant;
@@ -322,7 +332,7 @@ std::vector<Variant> variants_of(const std::vector<AnyLaw>& laws) {
     return variants;
 }
 
-/// Returns the law of the view's type, or a null pointer if the type was refused.
+/// Returns the law for the type of a view, or a null pointer if the type was refused.
 template <class AnyLaw>
 const AnyLaw* law_of(const std::vector<AnyLaw>& laws, const ObjectView& view) {
     const auto found =
@@ -330,8 +340,8 @@ const AnyLaw* law_of(const std::vector<AnyLaw>& laws, const ObjectView& view) {
     return found == laws.end() ? nullptr : &*found;
 }
 
-/// Calls a maker and reports the InputError that it throws, with the source location of the view. If values have been
-/// refused before, the error is not reported, because it may concern the defaults in their place.
+/// Calls a function that makes an object. Reports an InputError that it throws, with the source location of the view.
+/// The error is not reported if values have been refused before, because it may concern defaults that replaced them.
 template <class Make>
 auto made(const SceneContext& context, const ObjectView& view, const Make& make) -> decltype(make()) {
     try {

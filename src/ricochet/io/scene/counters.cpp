@@ -1,4 +1,4 @@
-// Counters of a scene: disks that count the particles that pass them.
+// Counters of a scene: disks that count the particles passing through them.
 #include <fmt/format.h>
 
 #include <set>

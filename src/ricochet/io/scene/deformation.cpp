@@ -1,4 +1,4 @@
-// Deforming meshes: positions of their vertices over time, from files.
+// Deforming meshes: vertex positions over time, read from files.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -55,7 +55,7 @@ struct NumberedFile {
     fs::path path;
 };
 
-/// Thrown after an error has been reported with its source location.
+/// Exception that is thrown after an error has been reported with its source location.
 struct Reported {};
 
 constexpr std::string_view kSeriesName = "a file name with one * for the number, such as \"flag_*.obj\"";
@@ -70,7 +70,8 @@ public:
     DeformationBuilder(SceneContext& context, const ObjectView& collider, const ObjectView& view)
         : context_(context), collider_(collider), view_(view), base_(context.file_of(collider)), up_(up_of(collider)) {}
 
-    /// Throws InputError for a fault of the whole deformation. Throws Reported after reporting a fault of a key.
+    /// Builds the motion. Throws InputError for a fault of the whole deformation. Throws Reported after reporting a
+    /// fault of a key.
     [[nodiscard]] MeshMotion build() {
         Series series = view_.type() == "series" ? of_series() : view_.type() == "keys" ? of_keys() : of_cache();
         if (up_ == MeshUp::y) {
@@ -93,8 +94,8 @@ private:
         return times.start + frame / times.frame_rate;
     }
 
-    /// Returns the result of read(). Reports the InputError of read() for this key. Throws Reported after that, and
-    /// also if the key is absent, because an absent key has been reported already.
+    /// Returns the result of read(). If read() throws InputError, reports the error at this key and throws Reported.
+    /// Also throws Reported if the key is absent, because an absent key has already been reported.
     template <class Read>
     auto from(const ObjectView& view, std::string_view key, const Read& read) const {
         if (!view.has(key)) throw Reported();
@@ -129,7 +130,7 @@ private:
         return series;
     }
 
-    /// Returns the time of a key. The previous keys have the times `before`.
+    /// Returns the time of a key. before: times of the previous keys.
     [[nodiscard]] double time_of(const ObjectView& key, const std::vector<double>& before) const {
         return from(key, "time", [&] {
             const double time = key.read<MeshKey>().time;
@@ -153,7 +154,7 @@ private:
         return series;
     }
 
-    /// Returns the files that match a name with one * for a number, in the order of their numbers.
+    /// Returns the files whose names match a pattern with one * for a number, in the order of their numbers.
     [[nodiscard]] std::vector<NumberedFile> numbered_files() const {
         const fs::path pattern = context_.path_of_file(view_.text("files"));
         const std::string name = pattern.filename().string();
@@ -204,7 +205,7 @@ private:
         }
     }
 
-    /// Reads the mesh that defines the faces. An unreadable mesh of the collider has been reported already.
+    /// Reads the mesh that defines the faces. If the collider's mesh is unreadable, this has already been reported.
     void read_base() {
         if (context_.load_groups(collider_) == nullptr) throw Reported();
         from(collider_, "file", [&] {
@@ -213,7 +214,8 @@ private:
         });
     }
 
-    /// Returns the vertices of a mesh with the same faces. count: number of such meshes, for the memory check.
+    /// Returns the vertices of a mesh that must have the same faces as the base mesh. count: number of meshes of the
+    /// series, for the memory check.
     [[nodiscard]] std::vector<Vec3> vertices_of(const fs::path& path, std::size_t count) {
         if (const auto problem = file_problem(path)) throw InputError(*problem);
         if (!asked_for_memory_) {
@@ -234,7 +236,7 @@ private:
         return std::move(mesh.mesh.vertices);
     }
 
-    /// Requires one point per vertex of the mesh that defines the faces.
+    /// Throws InputError unless there is one point per vertex of the base mesh.
     void require_as_many(std::size_t found, std::string_view one, std::string_view many, const fs::path& path) const {
         const std::size_t expected = mesh_.mesh.vertices.size();
         if (found == expected) return;
@@ -242,7 +244,7 @@ private:
                                      counted(expected, "vertex", "vertices"), base_.string()));
     }
 
-    // Refuses formats whose vertices were merged by position, because such vertices have no numbers of their own.
+    // Refuses file formats whose vertices were merged by position, because such formats do not number their vertices.
     static void require_numbers(const ImportedMesh& mesh, const fs::path& path) {
         if (!mesh.weld) return;
         throw InputError(
@@ -260,7 +262,7 @@ private:
     bool asked_for_memory_ = false;
 };
 
-/// Returns the mesh as it stands in its frame, or null for shapes without vertices.
+/// Returns the mesh of a shape in the coordinates of its frame, or null for shapes without vertices.
 std::shared_ptr<const TriangleMesh> mesh_within_frame(const ColliderShape& shape) {
     const auto* const mesh = std::get_if<MeshShape>(&shape);
     if (mesh != nullptr && mesh->mesh) {
@@ -271,7 +273,7 @@ std::shared_ptr<const TriangleMesh> mesh_within_frame(const ColliderShape& shape
     return std::make_shared<const TriangleMesh>(transformed(cuboid_mesh(box->size), box->placement));
 }
 
-/// Returns the reason why a shape cannot be scaled over time.
+/// Returns the message for a shape that cannot be scaled over time.
 std::string without_vertices(std::string_view type, bool by_poses, const std::string& frame) {
     if (by_poses) {
         return fmt::format(
@@ -287,7 +289,7 @@ std::string without_vertices(std::string_view type, bool by_poses, const std::st
         type, frame);
 }
 
-/// Returns the time range of the poses. Outside of it the collider stands still, unless a parent frame moves.
+/// Returns the time range of the poses. Outside this range the collider is at rest, unless a parent frame moves.
 std::pair<double, double> times_of(const std::vector<ObjectView>& poses) {
     const double begin = poses.front().node("time").number().value_or(0.0);
     const double end = poses.back().node("time").number().value_or(0.0);

@@ -15,7 +15,7 @@ namespace ricochet::detail {
 namespace {
 
 constexpr std::size_t kMostErrors = 10;
-constexpr std::size_t kMostLines = 100;  // of warnings, and of notes
+constexpr std::size_t kMostLines = 100;  // limit for warnings, and for notes
 
 bool is_plain(std::string_view key) {
     return !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
@@ -88,7 +88,8 @@ namespace {
 
 constexpr std::size_t kLongestWord = 100;
 
-// Tolerates one edit for words of up to four letters, and one more for every four letters beyond.
+// Returns the number of tolerated edits: one for words of up to four letters, and one more for every four further
+// letters.
 std::size_t tolerated_edits(std::size_t length) { return length == 0 ? 0 : 1 + (length - 1) / 4; }
 
 std::string without_style(std::string_view word) {
@@ -103,7 +104,7 @@ std::string without_style(std::string_view word) {
 }  // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-    // Rows i - 2, i - 1 and i of the table of distances between prefixes.
+    // The vectors are rows i - 2, i - 1 and i of the table of distances between prefixes.
     std::vector<std::size_t> before(b.size() + 1);
     std::vector<std::size_t> above(b.size() + 1);
     std::vector<std::size_t> row(b.size() + 1);
@@ -129,7 +130,7 @@ std::vector<std::string_view> nearest_names(std::string_view word, const std::ve
     std::size_t best = std::numeric_limits<std::size_t>::max();
     for (const std::string_view candidate : candidates) {
         const std::string plain_candidate = without_style(candidate);
-        // The distance is at least the difference in length.
+        // The edit distance is at least the difference of the lengths.
         const auto [shorter, longer] = std::minmax({plain.size(), plain_candidate.size()});
         if (longer - shorter > tolerated_edits(plain_candidate.size())) continue;
         const std::size_t distance = edit_distance(plain, plain_candidate);

@@ -1,5 +1,6 @@
 /// \file
-/// Errors, warnings and notes on a scene, collected so that one run shows them all, and helpers for their texts.
+/// Errors, warnings and notes on a scene, and helper functions for their texts. All messages are collected, so one run
+/// shows all of them.
 #pragma once
 
 #include <cstddef>
@@ -11,26 +12,26 @@
 
 namespace ricochet::detail {
 
-/// Returns the path of a value in the document, for example "colliders[1].file". Keys that are not plain words are
-/// quoted.
+/// Returns the path of a value in the document, for example "colliders[1].file". Keys are quoted unless they are plain
+/// words.
 [[nodiscard]] std::string path_of_key(const std::string& parent, std::string_view key);
 [[nodiscard]] std::string path_of_item(const std::string& parent, std::size_t index);
 
 /// Errors, warnings and notes with their source locations.
 class Diagnostics {
 public:
-    /// file: the scene file's name as the user wrote it. overrides: the `--set` arguments.
+    /// file: name of the scene file as the user wrote it. overrides: the `--set` arguments.
     Diagnostics(std::string file, std::vector<std::string> overrides);
 
-    /// Records an error. path: empty if no single value is meant.
+    /// Records an error. path: path of the value; empty if the error concerns no single value.
     void error(const SourceLocation& location, const std::string& path, std::string_view what);
     void warning(const SourceLocation& location, const std::string& path, std::string_view what);
-    /// Records a correct step that the scene did not ask for explicitly, for example a change of the up axis.
+    /// Records a correct operation that the scene did not request explicitly, for example a change of the up axis.
     void note(const SourceLocation& location, const std::string& path, std::string_view what);
 
     [[nodiscard]] bool failed() const { return !errors_.empty(); }
-    /// Returns one line per error, in the order of source locations. After ten errors, one line counts the rest.
-    /// Warnings and notes are listed alike, up to a hundred of each.
+    /// Returns one line per error, in the order of source locations. After ten errors, a last line states the number of
+    /// further errors. warnings() and notes() do the same after a hundred lines.
     [[nodiscard]] std::vector<std::string> errors() const;
     [[nodiscard]] std::vector<std::string> warnings() const;
     [[nodiscard]] std::vector<std::string> notes() const;
@@ -51,17 +52,17 @@ private:
     std::vector<Entry> notes_;
 };
 
-/// Returns the number of insertions, deletions, replacements and swaps of neighbours that turn a into b (optimal string
-/// alignment).
-/// Method: F. J. Damerau, "A technique for computer detection and correction of spelling errors", CACM 7(3), 1964.
+/// Returns the smallest number of edits that turn a into b (optimal string alignment). Edits are insertions, deletions,
+/// replacements, and swaps of neighbours. Method: F. J. Damerau, "A technique for computer detection and correction of
+/// spelling errors", CACM 7(3), 1964.
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// Returns the candidates nearest to the word: all at the smallest distance, or none if even the nearest is too far.
-/// Case, hyphens, underscores and blanks are ignored, so timeStep is next to time_step.
+/// Returns all candidates at the smallest edit distance from the word. The list is empty if this distance is too large.
+/// Case, hyphens, underscores and blanks are ignored, so timeStep matches time_step.
 [[nodiscard]] std::vector<std::string_view> nearest_names(std::string_view word,
                                                           const std::vector<std::string_view>& candidates);
 
-/// Returns `did you mean "a" or "b"?`. Empty without names.
+/// Returns a suggestion such as `did you mean "a" or "b"?`. Empty if there are no names.
 [[nodiscard]] std::string did_you_mean(const std::vector<std::string_view>& names);
 
 /// Returns `"a", "b", "c"`.

@@ -21,7 +21,7 @@
 
 namespace ricochet::detail {
 
-// Nodes, and the words for their values in messages.
+// Nodes, and descriptions of their values for messages.
 
 std::optional<double> JsonNode::number() const {
     if (const auto* whole = std::get_if<std::uint64_t>(&value)) return static_cast<double>(*whole);
@@ -65,14 +65,14 @@ std::string described(const JsonNode& node) {
 
 namespace {
 
-using Step = std::variant<std::string, std::size_t>;  // a key or a list index
+using Step = std::variant<std::string, std::size_t>;  // part of a path: a key or a list index
 
-// Splits a path from left to right. Stops before the '=' that follows it.
+// Splits a path into steps from left to right. Stops before the '=' that follows the path.
 class PathReader {
 public:
     explicit PathReader(std::string_view text) : rest_(text) {}
 
-    // Returns nothing if the text does not begin with a path and '='.
+    // Returns the steps of the path; nothing if the text does not begin with a path and '='.
     std::optional<std::vector<Step>> read() {
         std::vector<Step> steps;
         while (rest_.empty() || rest_.front() != '=' || steps.empty()) {
@@ -114,13 +114,13 @@ private:
     std::string_view rest_;
 };
 
-// Follows a path to the value that it names, and adds missing objects. Reports paths that cannot be followed.
+// Follows a path to its value, and adds missing objects. Reports paths that cannot be followed.
 class Walker {
 public:
     Walker(JsonNode& root, const SourceLocation& location, Diagnostics& diagnostics)
         : node_(&root), location_(location), diagnostics_(diagnostics) {}
 
-    // Returns a null pointer after reporting an error.
+    // Returns the value at the end of the path, or a null pointer after reporting an error.
     JsonNode* walk(const std::vector<Step>& steps) {
         for (std::size_t i = 0; i < steps.size() && node_ != nullptr; ++i) {
             const bool item_follows = i + 1 < steps.size() && std::holds_alternative<std::size_t>(steps[i + 1]);
@@ -210,10 +210,11 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kLeftOut{"output", "camera", "picture", "title", "description"};
 
-/// Left out, because a state does not depend on the end of its run. So a run can be extended.
+/// Key that the fingerprint excludes, so that a run can be extended. The state at a time does not depend on the end of
+/// the run.
 constexpr std::string_view kDuration = "duration";
 
-/// Adds a value and a number for its type to a hash, so that different scenes add different sequences.
+/// Adds a value to a hash, preceded by a number for its type. Different scenes therefore add different sequences.
 class ValueHasher {
 public:
     explicit ValueHasher(StateHash& hash) : hash_(hash) {}
@@ -277,7 +278,8 @@ std::uint64_t scene_fingerprint(const JsonNode& root) {
 namespace ricochet {
 namespace {
 
-/// Converts numbers to doubles (2 and 2.0 are equal) and sorts keys, so that equal values have equal hashes.
+/// Converts all numbers to doubles and sorts all keys, so that equal values have equal hashes. For example, 2 and 2.0
+/// become equal.
 void make_plain(detail::JsonNode& node) {
     if (const auto number = node.number()) node.value = *number;
     if (detail::JsonNode::Array* list = node.array()) {

@@ -14,10 +14,10 @@ namespace ricochet::detail {
 
 class Diagnostics;
 
-/// Location of a key or a value: in the file, or in one of the command line's `--set` arguments.
+/// Location of a key or a value in the file, or in a `--set` argument of the command line.
 struct SourceLocation {
-    std::uint32_t line = 0;            ///< from 1; 0 for the whole file
-    std::uint32_t column = 0;          ///< from 1, in characters
+    std::uint32_t line = 0;            ///< line number, from 1; 0 for the whole file
+    std::uint32_t column = 0;          ///< column number in characters, from 1
     std::int32_t override_index = -1;  ///< index of the `--set` argument; -1 for the file
 };
 
@@ -27,7 +27,7 @@ struct JsonMember;
 struct JsonNode {
     using Array = std::vector<JsonNode>;
     using Object = std::vector<JsonMember>;
-    /// Whole numbers >= 0 are std::uint64_t, negative ones std::int64_t, all others double.
+    /// Value. Whole numbers >= 0 are std::uint64_t, negative whole numbers std::int64_t, and all other numbers double.
     std::variant<std::monostate, bool, std::uint64_t, std::int64_t, double, std::string, Array, Object> value;
     SourceLocation location;
 
@@ -37,16 +37,16 @@ struct JsonNode {
     [[nodiscard]] const Object* object() const { return std::get_if<Object>(&value); }
     [[nodiscard]] Object* object() { return std::get_if<Object>(&value); }
     [[nodiscard]] const std::string* text() const { return std::get_if<std::string>(&value); }
-    /// Returns any number as a double (rounded if it has more than 53 bits).
+    /// Returns a number of any type as a double, rounded if it has more than 53 bits. Returns nothing for other values.
     [[nodiscard]] std::optional<double> number() const;
-    /// Returns a whole number >= 0, also if it is written as 2.0 or 1e6.
+    /// Returns a whole number >= 0, even if it is written as 2.0 or 1e6. Returns nothing for other values.
     [[nodiscard]] std::optional<std::uint64_t> whole_number() const;
-    /// Returns the value of a key, or a null pointer if this is no object or has no such key.
+    /// Returns the value of a key. Returns a null pointer if this node is not an object or does not have the key.
     [[nodiscard]] const JsonNode* find(std::string_view key) const;
     [[nodiscard]] JsonNode* find(std::string_view key);
 };
 
-/// One key with its value. Members keep the order of the document.
+/// One key with its value. The members of an object are in the order of the document.
 struct JsonMember {
     std::string key;
     SourceLocation key_location;
@@ -62,23 +62,23 @@ inline constexpr std::size_t kLongestMessage = 200;
 inline constexpr std::size_t kDeepestNesting = 64;
 inline constexpr std::size_t kMostValues = 4000000;
 
-/// Parses a whole document. `//` and `/* */` comments are allowed. Duplicate keys, trailing commas and numbers beyond
-/// the range of doubles are errors. So are nesting deeper than kDeepestNesting and more than kMostValues values.
-/// Reports a syntax error and returns nothing. Reports duplicate keys and keeps the first one.
+/// Parses a whole document. `//` and `/* */` comments are allowed. Errors are duplicate keys, trailing commas, and
+/// numbers beyond the range of doubles. Nesting deeper than kDeepestNesting and more than kMostValues values are also
+/// errors. Reports a syntax error and returns nothing. Reports duplicate keys and keeps the first one.
 [[nodiscard]] std::optional<JsonNode> parse_json(std::string_view text, Diagnostics& diagnostics);
 
-/// Parses a single value of a `--set` argument. Every node gets the location. Returns nothing if the text is not JSON.
+/// Parses the value of a `--set` argument. Every node gets the given location. Returns nothing if the text is not JSON.
 [[nodiscard]] std::optional<JsonNode> parse_json_value(std::string_view text, const SourceLocation& location);
 
-/// Applies diagnostics.overrides()[number] to the document, for example `simulation.time_step=0.01`,
-/// `colliders[0].scale=[1, 2, 1]` or `materials["old rubber"].friction=0.2`. VALUE is JSON. Any other value is a text,
-/// so that `simulation.integrator=ballistic` needs no quotes. Adds missing objects and keys; the later check refuses
-/// unknown ones. List items must exist. Reports changes that it cannot apply.
+/// Applies the change diagnostics.overrides()[number] to the document. Examples: `simulation.time_step=0.01`,
+/// `colliders[0].scale=[1, 2, 1]`, `materials["old rubber"].friction=0.2`. The text after '=' is parsed as JSON. If it
+/// is not JSON, it becomes a string, so `simulation.integrator=ballistic` needs no quotes. Adds missing objects and
+/// keys; a later check refuses unknown keys. List items must exist. Reports changes that cannot be applied.
 void apply_override(JsonNode& root, std::size_t number, Diagnostics& diagnostics);
 
-/// Returns a hash of the scene's values, without source locations and comments. It leaves out the duration, and the
-/// keys for output and pictures ("output", "camera", "picture", "title", "description"). The order of keys in the file
-/// counts.
+/// Returns a hash of the scene's values, without source locations and comments. The hash excludes the duration, and the
+/// keys for output and pictures ("output", "camera", "picture", "title", "description"). It depends on the order of
+/// keys in the file.
 [[nodiscard]] std::uint64_t scene_fingerprint(const JsonNode& root);
 
 }  // namespace ricochet::detail

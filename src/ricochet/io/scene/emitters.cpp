@@ -17,9 +17,10 @@ namespace ricochet::detail {
 namespace {
 
 /// Local: a limit of input values.
-constexpr double kMostBirths = 4294967295.0;  // indices of particles are 32-bit numbers
+// Largest number of births, because indices of particles are 32-bit numbers.
+constexpr double kMostBirths = 4294967295.0;
 
-// Keys of an emitter on a mesh. The mesh itself comes from a file or a collider.
+// Keys of an emitter on a mesh, except the keys that select the mesh: a file or a collider.
 struct MeshKeys {
     Placement placement;
     bool volume = false;
@@ -137,7 +138,7 @@ EmitterShape shape_of(SceneContext& context, const SimulationSetup& setup, const
     return MeshSurfaceShape{surface};
 }
 
-// Returns false if the mesh was refused.
+// Returns true unless the mesh of the shape was refused.
 bool is_measurable(const EmitterShape& shape) {
     const auto* const surface = std::get_if<MeshSurfaceShape>(&shape);
     const auto* const volume = std::get_if<MeshVolumeShape>(&shape);
@@ -148,7 +149,7 @@ constexpr const char* kNoEmitterOnBody =
     "impulses of particles move this body, and where it will be within a step is not known at the births; expected an "
     "emitter in the world or in a frame that moves by itself";
 
-// Puts the emitter into the frame that its key "frame" names, or into the frame of its collider.
+// Attaches the emitter to the frame of its key "frame", or to the frame of its collider.
 void attach(const SceneContext& context, const ObjectView& view, const SimulationSetup& setup,
             EmitterDescription& emitter) {
     const bool is_on_collider = view.type() == "mesh" && view.has("collider");
@@ -193,7 +194,7 @@ void attach(const SceneContext& context, const ObjectView& view, const Simulatio
 
 double most_of(const MeanSpread& rate) { return rate.mean + rate.spread; }
 
-// Returns the largest number of particles per second. Reports contradictory rates.
+// Returns the largest possible number of births per second. Reports contradictory rates.
 double most_rate(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
                  const EmitterDescription& emitter) {
     const double per_area = most_of(emitter.rate_per_area);
@@ -216,7 +217,7 @@ double most_rate(const SceneContext& context, const SimulationSetup& setup, cons
     return most_of(emitter.rate) + per_frame * setup.options.frame_rate;
 }
 
-// Reports contradictions. Returns the largest possible number of births.
+// Reports contradictory settings. Returns the largest possible number of births.
 double checked_births(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
                       const EmitterDescription& emitter) {
     const double duration = setup.options.duration;
@@ -236,7 +237,7 @@ double checked_births(const SceneContext& context, const SimulationSetup& setup,
     return std::min(births, static_cast<double>(emitter.limit));
 }
 
-// Reports volumes that cannot be filled, at the key of their mesh.
+// Reports mesh volumes in which no positions can be drawn, at the key of the mesh.
 void check_volume(const SceneContext& context, const ObjectView& view, const EmitterShape& shape) {
     const auto* const volume = std::get_if<MeshVolumeShape>(&shape);
     if (volume == nullptr || volume->mesh == nullptr) return;

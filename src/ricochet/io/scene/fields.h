@@ -1,11 +1,11 @@
 /// \file
-/// Scene keys bound to the members that they set. One line of a table gives the name, member, range, unit and meaning
-/// of a key. The checker, the reader, the JSON Schema and the reference in docs/ all follow from it. Type and default
-/// come from the member:
+/// Scene keys bound to the members that they set. One line of a table contains the name, member, range, unit and
+/// meaning of a key. The checker, the reader, the JSON Schema and the reference in docs/ are all derived from these
+/// tables. Type and default follow from the member:
 ///
 ///     {"density", &BodyKeys::density, kPositive, "kg/m^3", "Mass per volume."}
 ///
-/// Structs whose settings have a table of their own (core/setting.h) take their keys from it, see fields_of().
+/// fields_of() makes the keys of a struct whose settings have their own table (core/setting.h).
 #pragma once
 
 #include <concepts>
@@ -28,9 +28,9 @@ namespace ricochet::detail {
 template <class Member>
 concept Enumeration = std::is_enum_v<Member>;
 
-/// Format of a member of this type in a scene. read() takes a checked value. text() returns the JSON text of a default;
-/// it is empty if no scene can express the default (infinite, absent, an empty text). This general format is for
-/// structs whose members are set by the keys of KeySpec::content.
+/// Format of members of one type in a scene. read() converts a checked value. text() returns the JSON text of a
+/// default. The text is empty if a scene cannot express the default: an infinite number, an absent value, or an empty
+/// text. This general template is for structs whose members are set by the keys of KeySpec::content.
 template <class Member>
 struct Format {
     static constexpr ValueType kType = ValueType::object;
@@ -58,7 +58,7 @@ struct Format<std::string> {
     static void read(const JsonNode& node, const KeySpec& key, std::string& value);
     static std::string text(const KeySpec& key, const std::string& value);
 };
-/// [x, y, z]. With ValueType::scale, also one number for all three.
+/// Format of vectors: [x, y, z]. With ValueType::scale, a single number sets all three components.
 template <>
 struct Format<Vec3> {
     static constexpr ValueType kType = ValueType::vector;
@@ -111,28 +111,28 @@ struct Format<std::vector<Member>> {
     static std::string text(const KeySpec& /*key*/, const std::vector<Member>& /*value*/) { return "[]"; }
 };
 
-// Options of a table line besides name, member, range, unit and meaning.
+// Options of a table line, in addition to name, member, range, unit and meaning.
 
 enum class Rule { required, not_zero, not_empty, two_or_more };
 inline constexpr Rule kRequired = Rule::required;
 inline constexpr Rule kNotZero = Rule::not_zero;
 inline constexpr Rule kNotEmpty = Rule::not_empty;
 inline constexpr Rule kTwoOrMore = Rule::two_or_more;
-/// Meaning of an absent key, instead of a default.
+/// Meaning of an absent key, for keys without a default.
 struct Without {
     std::string_view words;
 };
 struct Unit {
     std::string_view name;
 };
-/// Description of an expected text, for messages and the reference.
+/// Description of the expected text, for messages and the reference.
 struct Expected {
     std::string_view words;
 };
 struct Presence {
     bool is_required = false;
 };
-/// Key that must be present together with this one.
+/// Key that must also be present.
 struct Needs {
     std::string_view key;
 };
@@ -140,7 +140,7 @@ struct Needs {
 struct LowEnd {
     Range range;
 };
-/// Key of the scene with the objects that can be named instead.
+/// Key of the scene that contains the objects whose names can be used as values.
 struct NamedIn {
     std::string_view table;
 };
@@ -164,8 +164,8 @@ inline void set_option(KeySpec& key, Choices choices) {
 template <class Member, class Struct>
 concept MemberOf = std::invocable<Member, Struct&>;
 
-/// One line of the table of a struct. It binds a key to a member, which `member` (a pointer or a function) gives. It
-/// can also describe a key without a member, which the builder reads itself.
+/// One line of the table of a struct. It binds a key to a member. `member` is a pointer to the member or a function
+/// that returns it. A line can also describe a key without a member, which the builder of the object reads.
 template <class Struct>
 struct Field : KeySpec {
     template <MemberOf<Struct> Member, class... Options>
@@ -175,7 +175,7 @@ struct Field : KeySpec {
         type = Format<Value>::kType;
         describe(key, allowed, si_unit, meaning, options...);
         if constexpr (std::default_initializable<Struct>) {
-            // Static, because GCC takes members of unknown place in a local struct for uninitialized.
+            // The object is static, because for a local struct, GCC warns that the members may be uninitialized.
             static Struct defaults = Struct();
             if (without.empty() && !required) default_value = Format<Value>::text(*this, std::invoke(member, defaults));
         }
@@ -211,7 +211,7 @@ private:
         description = meaning;
         (set_option(*this, options), ...);
     }
-    // Returns the part of the key that read functions need.
+    // Returns the members of the key that read functions need.
     [[nodiscard]] KeySpec reading_spec() const {
         return {.name = name, .type = type, .description = description, .choices = choices, .content = content};
     }
@@ -220,8 +220,8 @@ private:
 template <class Struct>
 using Fields = std::vector<Field<Struct>>;
 
-/// Returns the keys of a table of settings for a part of a struct, which `part_of` returns. The options apply to all of
-/// them.
+/// Returns the keys of a table of settings for a part of a struct. part_of: function that returns this part. options:
+/// apply to all keys.
 template <class Struct>
 [[nodiscard]] Fields<Struct> fields_of_part(auto part_of, const auto& table, auto... options) {
     Fields<Struct> fields;
@@ -236,7 +236,7 @@ template <class Struct>
     return fields;
 }
 
-/// Returns the keys of a table of settings. The options apply to all of them.
+/// Returns the keys of a table of settings. options: apply to all keys.
 template <class Struct>
 [[nodiscard]] Fields<Struct> fields_of(const auto& table, auto... options) {
     return fields_of_part<Struct>(std::identity{}, table, options...);
@@ -261,7 +261,7 @@ template <class Struct>
     return {title, description, {fields.begin(), fields.end()}, std::move(variants), &typeid(Struct)};
 }
 
-/// Struct for tables whose keys set no members.
+/// Empty struct for tables whose keys set no members.
 struct Unbound {};
 
 }  // namespace ricochet::detail

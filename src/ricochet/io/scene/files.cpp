@@ -92,7 +92,7 @@ void add_bytes(StateHash& hash, const fs::path& path) {
 
 namespace {
 
-// Returns the mesh with the other axis up: from y up to z up, or back to the coordinates of a file with y up.
+// Returns the mesh with the other upward axis. to_z_up: true to convert from y up to z up, false for the reverse.
 std::shared_ptr<const TriangleMesh> turned_mesh(TriangleMesh mesh, bool to_z_up) {
     for (Vec3& v : mesh.vertices) v = to_z_up ? y_up_as_z_up(v) : z_up_as_y_up(v);
     return std::make_shared<const TriangleMesh>(std::move(mesh));
@@ -134,7 +134,7 @@ const MeshGroups& MeshLibrary::groups(const fs::path& path) { return entry(path)
 
 namespace {
 
-// Returns the names of one group in order of priority.
+// Returns the names of a group in order of priority.
 std::vector<std::string_view> names_of(const MeshGroups& mesh, const FaceGroup& group) {
     std::vector<std::string_view> names = {mesh.names[group.material], mesh.names[group.group]};
     const std::vector<std::string_view> words = words_of(mesh.names[group.group]);

@@ -1,5 +1,5 @@
 /// \file
-/// Files that a scene names: readable files, meshes, and the groups of a mesh with their materials.
+/// Files of a scene: checks of their paths, meshes, and the groups of a mesh with their materials.
 #pragma once
 
 #include <cstddef>
@@ -19,87 +19,89 @@
 
 namespace ricochet::detail {
 
-/// Groups of faces in a mesh file. The lists are empty if the file names no groups.
+/// Groups of faces in a mesh file. The lists are empty if the file defines no groups.
 struct MeshGroups {
     std::string format;                          ///< for example "OBJ" or "STL, binary"
-    std::vector<std::uint32_t> triangle_groups;  ///< index into groups for every triangle
+    std::vector<std::uint32_t> triangle_groups;  ///< index into `groups` for every triangle
     std::vector<FaceGroup> groups;
     std::vector<std::string> names;
 
-    /// Returns false for formats that cannot name groups.
+    /// Returns true if files of this format can define groups.
     [[nodiscard]] bool format_has_groups() const {
         return format == "OBJ" || format == "STL, ASCII" || format.starts_with("glTF");
     }
-    /// Returns every name that can select a triangle, in order of first use: material, group (the whole name, then its
-    /// words if it has several) and object.
+    /// Returns every name that can select a triangle, in order of first use. These are the names of materials, groups
+    /// and objects. If a group name has several words, each word is also a name.
     [[nodiscard]] std::vector<std::string_view> all_names() const;
 };
 
 [[nodiscard]] MeshGroups groups_of(const ImportedMesh& imported);
 
-/// Returns one group for each combination of names that faces of the file have.
+/// Returns the triangle groups, one for each combination of names that occurs in the file.
 [[nodiscard]] TriangleGroups triangle_groups(const MeshGroups& groups);
 
-/// Materials given to names.
+/// Materials that a scene assigns to names of a mesh file.
 struct NamedMaterials {
-    /// Material by name of a group.
+    /// Material index for each name.
     std::map<std::string, std::uint32_t, std::less<>> materials;
-    /// Material of triangles whose group has no name in `materials`.
+    /// Material index of triangles whose group has no name in `materials`.
     std::uint32_t otherwise = 0;
 };
 
-/// Materials of triangles by their groups.
+/// Materials of all triangles of a mesh.
 struct TriangleMaterials {
-    std::vector<std::uint32_t> materials;          ///< one per triangle
-    std::vector<std::string_view> names_not_used;  ///< requested names that no triangle takes its material from
+    std::vector<std::uint32_t> materials;          ///< material index of each triangle
+    std::vector<std::string_view> names_not_used;  ///< requested names that determine no triangle's material
 };
 
-/// Returns the material of every triangle. It is found by the name of the triangle's material, else by its group (the
-/// whole name, then word by word), else by its object.
+/// Returns the material of every triangle. The first requested name determines it, in this order: the name of the
+/// triangle's material in the file, the whole group name, each word of the group name, and the object name.
 [[nodiscard]] TriangleMaterials materials_by_group(const MeshGroups& groups, const NamedMaterials& named);
 
-/// Returns the reason why a path is not a readable regular file, with the nearest file names of its folder. Returns
-/// nothing if it is one.
+/// Returns the reason why a path is not a readable regular file, with similar file names in the same folder. Returns
+/// nothing if the file is readable.
 [[nodiscard]] std::optional<std::string> file_problem(const std::filesystem::path& path);
 
-/// Returns the bytes of a file. Throws InputError if it cannot be read or exceeds the limit or the memory.
+/// Returns the bytes of a file. Throws InputError if the file cannot be read, or if its size exceeds `largest` or the
+/// memory limit.
 [[nodiscard]] std::string read_bytes(const std::filesystem::path& path, std::uint64_t largest);
 
-/// Adds the contents of a file to a hash. Throws InputError if it cannot be read.
+/// Adds the contents of a file to a hash. Throws InputError if the file cannot be read.
 void add_bytes(StateHash& hash, const std::filesystem::path& path);
 
-/// Axis of a mesh file that points up. In scenes it is z.
+/// Upward axis of a mesh file. In scenes, z is the upward axis.
 enum class MeshUp : std::uint8_t {
     by_format,  ///< y for glTF files, z for all others
     z,
     y,
 };
 
-/// Meshes by file. Each file is read only once.
+/// Cache of meshes by file. Each file is read only once.
 class MeshLibrary {
 public:
-    /// Returns the mesh with z up. Throws InputError with the reader's message.
+    /// Returns the mesh of a file with z up. Throws InputError with the message of the mesh reader. up: upward axis of
+    /// the file.
     [[nodiscard]] std::shared_ptr<const TriangleMesh> load(const std::filesystem::path& path, MeshUp up);
-    /// Returns true if the file's format has y up by default. Throws InputError like load().
+    /// Returns true if y is the upward axis of the file's format. Throws InputError like load().
     [[nodiscard]] bool is_y_up(const std::filesystem::path& path) { return entry(path).is_y_up; }
-    /// Returns notes on contents that were not read, one sentence each. Throws InputError like load().
+    /// Returns notes on contents of the file that were not read, one sentence each. Throws InputError like load().
     [[nodiscard]] const std::vector<std::string>& notes(const std::filesystem::path& path) { return entry(path).notes; }
-    /// Returns the files that were read together with it. Throws InputError like load().
+    /// Returns the other files that were read together with this file. Throws InputError like load().
     [[nodiscard]] const std::vector<std::filesystem::path>& files(const std::filesystem::path& path) {
         return entry(path).files;
     }
-    /// Returns the groups that the file names. Throws InputError like load().
+    /// Returns the groups that the file defines. Throws InputError like load().
     [[nodiscard]] const MeshGroups& groups(const std::filesystem::path& path);
 
 private:
     struct Entry {
         std::shared_ptr<const TriangleMesh> mesh;
-        std::shared_ptr<const TriangleMesh> turned;  ///< with the other axis up; made on first use
+        std::shared_ptr<const TriangleMesh> turned;  ///< mesh with the other upward axis; made on first use
         bool is_y_up = false;
         MeshGroups groups;
         std::vector<std::string> notes;
         std::vector<std::filesystem::path> files;
-        std::string error;  ///< message if it could not be read
+        std::string error;  ///< message of the reader if the file could not be read
     };
     [[nodiscard]] Entry& entry(const std::filesystem::path& path);
 

@@ -1,4 +1,4 @@
-// Flows of a scene: the keys and the maker of each type.
+// Flows of a scene: the keys of each type, and the function that makes the flow.
 
 #include <utility>
 
@@ -16,7 +16,7 @@ FlowLaw flow_law(std::string_view name, std::string_view description, const Fiel
             [make](const ObjectView& view, const SceneContext&) { return make(view.read<Settings>()); }};
 }
 
-// Structs for makers that take their values one by one.
+// Structs for functions that take their values as separate arguments.
 
 struct FlowKeys {
     double factor = 1.0;
@@ -172,7 +172,7 @@ const ObjectSpec& flow_spec() {
     static ObjectSpec spec = object<FlowKeys>(
         "flow", "Velocity field of a fluid.",
         {{"factor", &FlowKeys::factor, kCoordinate, "", "Factor of the velocity."}}, variants_of(flow_laws()));
-    // A sum consists of flows, so this part of the table refers to the whole table.
+    // A sum consists of flows, so its entry refers to the whole table.
     static const bool closed = [] {
         spec.variants.push_back(variant<Unbound>("sum", "Sum of several flows.",
                                                  {{"parts", ValueType::list, "Flows whose velocities are added.",

@@ -1,4 +1,4 @@
-// Forces of a scene: the keys and the maker of each type.
+// Forces of a scene: the keys of each type, and the function that makes the force.
 
 #include <fmt/format.h>
 
@@ -278,7 +278,7 @@ std::vector<ForcePointer> ForceBuilder::forces() const {
 
 void warn_of_unknown_ids(const SceneContext& context, const ObjectView& view, const SimulationSetup& setup,
                          std::span<const std::uint64_t> ids) {
-    if (!setup.emitters.empty()) return;  // they may create these ids later
+    if (!setup.emitters.empty()) return;  // emitters may create these ids later
     const auto is_unknown = [&](std::uint64_t id) { return id >= setup.particles.size(); };
     const auto unknown = std::find_if(ids.begin(), ids.end(), is_unknown);
     if (unknown == ids.end()) return;

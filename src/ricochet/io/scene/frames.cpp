@@ -1,4 +1,4 @@
-// Keyed curves of a scene, and frames of reference that move along them.
+// Keyed curves of a scene, and reference frames that move along them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -50,7 +50,8 @@ Fields<CurveKeys<Value>> curve_fields(const ObjectSpec& key_spec) {
                             "the keys repeat, and each round starts with the last value of the previous one")}}};
 }
 
-// Checks a rule that the table cannot express: times must increase.
+// Returns true if the times of the keys increase. Otherwise reports the first wrong time. The tables of keys cannot
+// express this rule.
 bool are_good_keys(const std::vector<ObjectView>& keys, Diagnostics& diagnostics, bool has_values = true) {
     bool good = !keys.empty();
     double before = 0.0;
@@ -86,7 +87,7 @@ KeyedCurve<Vec3> scale_curve_of(const ObjectView& view, Diagnostics& diagnostics
     return diagnostics.failed() ? KeyedCurve<Vec3>({1, 1, 1}) : curve;
 }
 
-// Pose of a collider with its scale.
+// Pose of a collider, with a scale.
 struct ScaledPose : KeyPose {
     Vec3 scale{1, 1, 1};
 };
@@ -95,7 +96,7 @@ bool has_scale(const std::vector<ObjectView>& poses) {
     return std::any_of(poses.begin(), poses.end(), [](const ObjectView& view) { return view.has("scale"); });
 }
 
-// Returns the scale factors of poses along the frame's axes.
+// Returns the curve of the poses' scale factors along the frame's axes.
 KeyedCurve<Vec3> scale_through(const std::vector<ObjectView>& poses) {
     std::vector<CurveKey<Vec3>> keys;
     for (const ObjectView& view : poses) {
@@ -165,7 +166,7 @@ FrameDescription frame_of(const NamedObject& named, Diagnostics& diagnostics) {
     return frame;
 }
 
-// Reports parents that do not exist or form a cycle.
+// Returns true if all parents exist and form no cycle. Reports unknown parents and cycles.
 bool are_good_parents(const SceneContext& context, const std::vector<FrameDescription>& frames,
                       const std::vector<ObjectView>& views) {
     std::vector<std::string_view> names;
@@ -250,10 +251,10 @@ std::vector<FrameDescription> frames_of(const SceneContext& context) {
         frames.push_back(frame_of(named, context.diagnostics()));
     }
     if (!are_good_parents(context, frames, views) || context.failed()) {
-        for (FrameDescription& frame : frames) frame.parent.clear();  // the names are still valid
+        for (FrameDescription& frame : frames) frame.parent.clear();  // frames without parents still have valid names
     }
     for (FrameDescription& frame : frames) {
-        if (!frame.is_driven) continue;  // build_bodies() refuses the keys that a body must not have
+        if (!frame.is_driven) continue;  // build_bodies() reports the keys that a body must not have
         frame.parent.clear();
         frame.motions.clear();
     }

@@ -42,7 +42,7 @@ const ObjectSpec& heat_spec() {
 
 namespace {
 
-/// Removes "heat: " from the start of a message, because the report names the key already.
+/// Removes "heat: " from the start of a message, because the report already contains the path of the key.
 std::string without_own_name(std::string message) {
     constexpr std::string_view kName = "heat: ";
     return message.starts_with(kName) ? message.substr(kName.size()) : message;

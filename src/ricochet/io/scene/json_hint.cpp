@@ -30,7 +30,8 @@ std::size_t end_of_string(std::string_view text, std::size_t at) {
     return std::min(at + 1, text.size());
 }
 
-/// Returns the token at this offset, or the next one behind it. Punctuation marks are tokens, too. Empty at the end.
+/// Returns the token at an offset, or the next token after it. Punctuation marks are also tokens. The result is empty
+/// at the end of the text.
 Token token_from(std::string_view text, std::size_t at) {
     constexpr std::string_view kSpace = " \t\r\n";
     constexpr std::string_view kMarks = "{}[],:";

@@ -14,8 +14,8 @@ struct JsonHint {
     std::string text;
 };
 
-/// Returns a hint for a missing comma or colon, or for a comma too many. Returns nothing for other errors. position:
-/// number of bytes that the parser had read when it stopped. message: the error message of the parser.
+/// Returns a hint for a missing comma or colon, or for a superfluous comma. Returns nothing for other errors. position:
+/// number of bytes that the parser had read when it stopped. message: error message of the parser.
 [[nodiscard]] std::optional<JsonHint> json_hint(std::string_view text, std::size_t position, std::string_view message);
 
 }  // namespace ricochet::detail

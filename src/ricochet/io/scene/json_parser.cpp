@@ -19,7 +19,8 @@ using Json = nlohmann::json;
 
 bool is_delimiter(char c) { return std::string_view(" \t\r\n,:[]{}\"/").find(c) != std::string_view::npos; }
 
-// Follows the text in step with the parser's events, which have no locations. Every event consumes one token.
+// Finds the locations of the parser's events, which have no locations themselves. Every event corresponds to one token
+// of the text.
 class TokenLocations {
 public:
     explicit TokenLocations(std::string_view text) : text_(text) {
@@ -41,7 +42,7 @@ private:
         if (c == '\n') {
             ++line_;
             column_ = 1;
-        } else if ((static_cast<unsigned char>(c) & 0xC0U) != 0x80U) {  // a character's first byte
+        } else if ((static_cast<unsigned char>(c) & 0xC0U) != 0x80U) {  // first byte of a UTF-8 character
             ++column_;
         }
     }
@@ -86,7 +87,7 @@ private:
     std::uint32_t column_ = 1;
 };
 
-// Returns the library's message without its own prefix and location.
+// Returns the message of the JSON library without its prefix and location.
 std::string plain_message(std::string message) {
     if (const auto bracket = message.find("] "); bracket != std::string::npos) message.erase(0, bracket + 2);
     if (message.starts_with("parse error at ")) {
@@ -95,7 +96,8 @@ std::string plain_message(std::string message) {
     return printable(message, kLongestMessage);
 }
 
-// Builds the tree. Open containers are the last elements of their parents, so pointers to them stay valid.
+// Builds the tree of nodes. An open container is the last element of its parent, so pointers to open containers stay
+// valid.
 class TreeBuilder final : public nlohmann::json_sax<Json> {
 public:
     TreeBuilder(std::string_view text, Diagnostics& diagnostics)
@@ -130,7 +132,8 @@ public:
 
     JsonNode take() { return std::move(root_); }
 
-    /// Returns true if the text has no NUL byte. Reports one, because the parser would only read the part before it.
+    /// Returns true if the text has no NUL byte. Otherwise reports an error, because the parser would read only the
+    /// part before this byte.
     [[nodiscard]] bool is_text() {
         const std::size_t nul = text_.find('\0');
         if (nul == std::string_view::npos) return true;
@@ -209,7 +212,7 @@ private:
         members = std::move(kept);
     }
 
-    // Returns the path of the innermost open container.
+    // Returns the path of the innermost open container for messages.
     [[nodiscard]] std::string path_of_open() const {
         std::string path;
         for (std::size_t i = 0; i + 1 < open_.size(); ++i) {

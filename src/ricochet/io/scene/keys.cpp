@@ -79,11 +79,11 @@ const KeySpec* find_key(const ObjectSpec& object, const Variant* variant, std::s
 }
 
 std::string range_words(const Range& range) {
-    // A bound of 1e75 tells a reader nothing. The checker reports values beyond it.
+    // A bound of 1e75 is not helpful to readers, so it is omitted. The checker reports values beyond this bound.
     const bool below = range.lower > -kLargestCoordinate;
     const bool above = range.upper < kLargestCoordinate;
     std::string lower = fmt::format("{} {}", range.lower_open ? ">" : ">=", range.lower);
-    // 2^64 stands for 2^64 - 1, the largest 64-bit integer, which no double represents.
+    // The bound 2^64 stands for 2^64 - 1. This largest 64-bit integer has no exact double.
     const std::string upper = range.upper == 0x1p64 ? "18446744073709551615" : fmt::format("{}", range.upper);
     if (below && above) return range.lower == range.upper ? upper : fmt::format("{} and <= {}", lower, upper);
     if (below) return lower;
@@ -141,7 +141,7 @@ std::string not_built(const std::string& what) {
     return what + " is part of the scene format but not built in this version";
 }
 
-// Reading of checked objects.
+// Functions that read checked objects.
 
 void read_members(const JsonNode& node, const std::vector<KeySpec>& keys, void* object) {
     for (const KeySpec& key : keys) {

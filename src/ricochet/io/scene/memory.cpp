@@ -1,4 +1,4 @@
-// Estimate of the memory that a scene needs, made before a run allocates it.
+// Estimates the memory that a scene needs, before a run allocates it.
 #include <fmt/format.h>
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Contacts between spheres: their materials by pair, and settings that cannot be combined with them.
+// Contacts between spheres: materials of pairs, and settings that cannot be combined with these contacts.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ const ObjectSpec& material_pair_spec() {
     return spec;
 }
 
-/// Returns the material of an object. Absent keys have the values for all spheres.
+/// Returns the material that an object describes. Members with absent keys have the values that apply to all spheres.
 PairMaterial material_at(const ObjectView& view, const PairContactSettings& all) {
     PairMaterial material = material_of_all(all);
     view.read_into(material);
@@ -57,7 +57,7 @@ void read_pairs(const SceneContext& context, const ObjectView& view, PairContact
             is_known = false;
             context.error(pair, key, unknown_name("material among particle_contacts.materials", name, known));
         }
-        const bool is_named = !read.first.empty() && !read.second.empty();  // otherwise it has been refused already
+        const bool is_named = !read.first.empty() && !read.second.empty();  // an absent name has already been reported
         if (!is_known || !is_named) continue;
         if (read.first == read.second) {
             context.error(

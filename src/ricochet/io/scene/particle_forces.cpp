@@ -1,4 +1,4 @@
-// Forces between particles: the keys and the maker of each type.
+// Forces between particles: the keys of each type, and the function that makes the force.
 #include <fmt/format.h>
 
 #include <utility>
@@ -120,7 +120,7 @@ void check_attributes(const SceneContext& context, const SimulationSetup& setup,
     }
 }
 
-/// Refuses settings that cannot be combined with forces between particles.
+/// Reports settings that cannot be combined with forces between particles.
 void check_company(const SceneContext& context, const SimulationSetup& setup) {
     if (context.objects("particle_forces").empty()) return;
     const auto refuse = [&](const char* why) { context.error(context.root(), "particle_forces", why); };

@@ -1,4 +1,4 @@
-// Explicit particles, which exist from the start: one by one, or from a text table.
+// Explicit particles, which exist from the start of a run: listed in the scene, or read from a text table.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,13 +25,13 @@ namespace {
 constexpr std::size_t kMostErrors = 10;
 constexpr std::uint64_t kLargestTable = std::uint64_t{16} << 30;
 
-// Attribute and component that a number sets.
+// Attribute column and component that a cell of a table sets.
 struct AttributeComponent {
     std::size_t column = 0;
     int component = 0;
 };
 
-// A column, the key of an explicit particle whose rules it follows, and the member that its numbers set.
+// A column of a table, the key of an explicit particle whose rules apply to it, and the member that it sets.
 struct Column {
     std::string_view name;
     std::string_view key;  ///< empty for columns of a final state that are not used
@@ -111,8 +111,8 @@ public:
     }
 
 private:
-    /// Returns true if the text has no NUL byte. Reports one: in a file that is not UTF-8 text, no column would be
-    /// known.
+    /// Returns true if the text has no NUL byte. Otherwise reports an error. A file with NUL bytes is not UTF-8 text,
+    /// so all its columns would be unknown.
     bool is_text() {
         const std::size_t nul = rest_.find('\0');
         if (nul == std::string_view::npos) return true;
@@ -164,8 +164,8 @@ private:
         }
     }
 
-    // Returns the target of a column: "temperature", or "wind_x" for a vector. Columns of appearance need no
-    // declaration.
+    // Returns the attribute component of a column, for example "temperature", or "wind_x" for a vector. Columns of
+    // appearance need no declaration.
     std::optional<AttributeComponent> attribute_component(std::string_view cell) {
         const bool has_end =
             cell.size() > 2 && cell[cell.size() - 2] == '_' && cell.back() >= 'x' && cell.back() <= 'z';
@@ -262,7 +262,7 @@ private:
     ParticleTable table_;
 };
 
-// Reads the particles of a table. Columns of appearance that only the table has declare their attributes.
+// Reads the particles of a table. Columns of appearance in the table also declare their attributes.
 std::vector<Particle> particles_from_table(const SceneContext& context, const ObjectView& view,
                                            SimulationSetup& setup) {
     if (!view.has("file")) return {};

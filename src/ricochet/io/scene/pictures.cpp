@@ -1,4 +1,4 @@
-// Appearance of a scene: the camera of its pictures, their light and surroundings.
+// Appearance of a scene: the camera, light and background of its pictures.
 #include <fmt/format.h>
 
 #include <array>
@@ -18,9 +18,11 @@ namespace ricochet::detail {
 namespace {
 
 /// Local: a limit of input values.
-constexpr double kSmallestSine = 1e-6;  // sine of the smallest angle between the view and up
+// Sine of the smallest allowed angle between the view direction and the upward direction.
+constexpr double kSmallestSine = 1e-6;
 
-// Returns true if a body moves the frame or one of its parents. The position of such a frame is unknown before the run.
+// Returns true if a dynamic body moves the frame or one of its parents. The position of such a frame is unknown before
+// the run.
 bool stands_on_body(const FrameTree& frames, std::size_t frame) {
     std::optional<std::size_t> k = frame;
     while (k) {
@@ -39,7 +41,8 @@ void check_frame(const SceneContext& context, const ObjectView& view, const Fram
     }
 }
 
-// Requires exactly one of a point and a path. Returns true if the camera has one.
+// Returns true if the camera has the key `point` or the key `path`. Reports an error unless exactly one of them is
+// present.
 bool has_one_of(const SceneContext& context, const ObjectView& view, const char* point, const char* path) {
     if (view.has(point) && view.has(path)) {
         context.error(view, path, fmt::format("\"{}\" says the same, expected one of the two", point));
@@ -69,7 +72,7 @@ CameraDescription camera_of(const SceneContext& context, const ObjectView& view,
     if (view.has("focal_length") && view.has("field_of_view")) {
         context.error(view, "focal_length", "\"field_of_view\" says the same, expected one of the two");
     }
-    // A constant of photography.
+    // Height of a picture on 35 mm film. A constant of photography.
     constexpr double kFilmHeight = 24.0;  // mm
     if (camera.focal_length) {
         camera.field_of_view_degrees = std::atan(0.5 * kFilmHeight / *camera.focal_length) * 360.0 / std::numbers::pi;
@@ -142,8 +145,8 @@ std::optional<std::string> mesh_problem(const std::filesystem::path& path) {
     return std::nullopt;
 }
 
-// Returns the reason why a file does not start like a PNG image, or nothing if it does.
-// Source: W3C, "Portable Network Graphics (PNG) Specification", 5.2 and 11.2.2.
+// Returns the reason why a file does not start with the header of a PNG image. Returns nothing if it does. Source: W3C,
+// "Portable Network Graphics (PNG) Specification", 5.2 and 11.2.2.
 std::optional<std::string> png_problem(const std::filesystem::path& path) {
     constexpr std::string_view kSignature("\x89PNG\r\n\x1a\n", 8);
     std::array<char, 24> head{};
@@ -156,7 +159,7 @@ std::optional<std::string> png_problem(const std::filesystem::path& path) {
     return fmt::format("{} is not a PNG file, expected one", path.string());
 }
 
-// Returns the path of the file that a key names. Empty if the key is absent, or after reporting an error.
+// Returns the path of the file that a key contains. Empty if the key is absent, or after reporting an error.
 std::string picture_file(const SceneContext& context, const ObjectView& view, std::string_view key) {
     if (!view.has(key)) return "";
     const std::filesystem::path path = context.path_of_file(view.text(key));
@@ -168,7 +171,7 @@ std::string picture_file(const SceneContext& context, const ObjectView& view, st
     return "";
 }
 
-// Checks that a drawing has the file that it needs, and no keys of other drawings.
+// Reports a drawing without its required file, or with keys of other drawings.
 void check_drawing(const SceneContext& context, const ObjectView& view, const ParticleDrawingDescription& picture) {
     for (const auto& [drawing, key] : {std::pair{"sprites", "sprite"}, std::pair{"meshes", "mesh"}}) {
         const bool is_drawn = picture.particles == drawing;
@@ -202,7 +205,7 @@ void check_stretch(const SceneContext& context, const ObjectView& view, const Pi
     }
 }
 
-// Reports black bodies without an attribute for their temperature.
+// Reports the key "black_body" if particles have no attribute "temperature".
 void check_black_body(const SceneContext& context, const ObjectView& view, const SimulationSetup& setup) {
     if (!view.has("black_body")) return;
     for (const AttributeDescription& attribute : setup.attributes) {
@@ -321,7 +324,7 @@ static void build_drawings(const SceneContext& context, SceneDescription& scene)
         const ObjectView view = emitter.object("drawing");
         auto drawing = view.read<ParticleDrawingDescription>();
         check_drawing(context, view, drawing);
-        // Keys that belong to other kinds of drawing have been reported already and are ignored here.
+        // Keys of other kinds of drawing have already been reported, so they are ignored here.
         drawing.sprite = drawing.particles == "sprites" ? picture_file(context, view, "sprite") : "";
         drawing.mesh = drawing.particles == "meshes" ? picture_file(context, view, "mesh") : "";
         if (drawing.particles == "streaks" && !(scene.picture && scene.picture->shutter > 0.0)) {

@@ -1,4 +1,4 @@
-// Springs of a scene: one by one, and as ropes, chains and cloth.
+// Springs of a scene: single springs, ropes, chains and cloth.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace ricochet::detail {
 namespace {
 
 /// Local: a limit of input values.
-constexpr double kMostVertices = 1e8;  // of a sheet
+constexpr double kMostVertices = 1e8;  // largest number of vertices of a sheet
 
 enum class PinnedEnds { none, from, to, both };
 
@@ -71,7 +71,7 @@ Variant list_variant() {
                             {{"springs", ValueType::list, "The springs.", &spring_spec(), kRequired}});
 }
 
-// Keys that ropes and chains share.
+// Returns the keys that ropes and chains share.
 Fields<RopeKeys> rope_fields() {
     using R = RopeKeys;
     return joined<R>({fields_of<R>(kRopeTable),
@@ -109,7 +109,7 @@ Variant chain_variant() {
         {"stiffness", "axial_stiffness"});
 }
 
-// Keys that cloth and sheets share.
+// Returns the keys that cloth and sheets share.
 Fields<ClothKeys> cloth_fields() {
     using C = ClothKeys;
     return joined<C>(
@@ -147,7 +147,7 @@ Variant sheet_variant() {
                    {"mass", "mass_per_area"});
 }
 
-// Returns the direction in which ropes hang at first.
+// Returns the direction in which slack ropes hang at the start.
 Vec3 fall_of(const SimulationSetup& setup) {
     const Vec3 fall = uniform_acceleration(setup);
     return fall == Vec3{} ? Vec3{0, 0, -1} : fall;
@@ -163,7 +163,7 @@ public:
         for (std::size_t i = 0; i < all_.particles.size(); ++i) all_.particles[i].id = i;
     }
 
-    // Single springs come last, because they can join any two particles.
+    // Builds all springs. Single springs come last, because they can join any two particles.
     SpringBody build() {
         const std::vector<ObjectView> views = context_.objects("springs");
         for (const ObjectView& view : views) {
@@ -190,8 +190,8 @@ private:
         return view.type() == "sheet" ? sheet_of(view) : cloth_of(view);
     }
 
-    // Returns true if all these keys are present, and exactly one of the two alternatives. Other cases have been
-    // reported already, so the maker must not report them again.
+    // Returns true if all `keys` are present, and exactly one of the keys `either` and `other`. Other cases have
+    // already been reported, and must not be reported again by the function that makes the springs.
     static bool is_complete(const ObjectView& view, std::initializer_list<std::string_view> keys,
                             std::string_view either, std::string_view other) {
         return std::all_of(keys.begin(), keys.end(), [&](std::string_view key) { return view.has(key); }) &&
@@ -262,8 +262,8 @@ private:
         return cloth.bending_stiffness > 0.0 ? 2.0 * edges : edges;
     }
 
-    // Returns true if a body with so many particles and springs fits the memory beside the rest. Reports it at this key
-    // otherwise.
+    // Returns true if a body with the given numbers of particles and springs fits into memory, together with all
+    // previous bodies. Otherwise reports it at this key.
     [[nodiscard]] bool is_room(const ObjectView& view, std::string_view key, double particles, double springs) const {
         const double bytes = bytes_of_springs(particles + static_cast<double>(all_.particles.size()),
                                               springs + static_cast<double>(all_.springs.size()), integrator_);
@@ -304,11 +304,11 @@ private:
         all_.springs.push_back(spring);
     }
 
-    // Returns true if a particle has this number. Reports the number otherwise.
+    // Returns true if there is a particle with this number. Otherwise reports the number.
     [[nodiscard]] bool is_particle(const ObjectView& view, std::string_view key, std::uint64_t number) const {
         if (!view.has(key)) return false;
         if (number < all_.particles.size()) return true;
-        if (!is_complete_) return false;  // it may belong to a body that was refused
+        if (!is_complete_) return false;  // the number may belong to a body that was refused
         context_.error(view, key,
                        fmt::format("there is no particle {}, the scene has {} from the start (numbered from 0)", number,
                                    all_.particles.size()));

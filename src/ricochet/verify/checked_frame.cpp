@@ -29,7 +29,8 @@ void require_good(const TriangleMesh& mesh) {
 
 Side side_of(int sign) { return sign > 0 ? Side::outside : (sign < 0 ? Side::inside : Side::on_surface); }
 
-/// Returns the local position R^T (x - t) of a stored position x in a moving frame, as MovingPose::image() defines it.
+/// Returns the local position R^T (x - t) of a stored position x in a moving frame, as defined by
+/// MovingPose::local_position().
 Vec3 local_position_by(const AffineMap& map, const Vec3& world) {
     const Vec3 d = world - map.translation;
     const auto sum = [&](double x, double y, double z) { return d.x * x + d.y * y + d.z * z; };

@@ -28,10 +28,10 @@ constexpr double kBoxSlack = 1e-12;
 /// Number of bisection steps for the Lagrange multiplier. Further steps would not change a double.
 constexpr int kHalvings = 120;
 
-/// Largest magnitude of a point's value, relative to the size of the shape, at which the point is on the surface. It is
-/// far above the errors of numbers with fifty digits. It is far below 2^-96, the distance that the sweep keeps between
-/// a particle and a surface. With more than 2^-96, free segments would be reported. With less than 1e-45, rounding
-/// would decide.
+/// Magnitude of round_value() below which a point is on the surface. 1 corresponds to the size of the shape. The limit
+/// is far above the errors of numbers with fifty digits. It is far below 2^-96, the distance that the sweep keeps
+/// between a particle and a surface. With a limit above 2^-96, free segments would be reported. With a limit below
+/// 1e-45, rounding would decide.
 const Digits kOnSurface("1e-36");
 
 template <class Real>

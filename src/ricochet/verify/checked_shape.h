@@ -4,8 +4,8 @@
 ///
 /// The shape is defined as in geometry/shapes/analytic_shape.h. Its axes are the directions of the map's columns, made
 /// orthonormal one after the other. The half axes are the lengths of the columns, rounded to doubles. Half axes that
-/// differ by at most 2^-49, relative to their length, are treated as equal. A point is on the surface if its value is
-/// at most kOnSurface.
+/// differ by at most 2^-49, relative to their length, are treated as equal. A point is on the surface if the magnitude
+/// of its value (see checked_shape.cpp) is below kOnSurface.
 #pragma once
 
 #include <memory>

@@ -13,9 +13,9 @@
 namespace ricochet {
 
 /// Largest tolerated overlap of two spheres, divided by the smaller radius, if the run has contact islands. The
-/// iterations of the contact solver end before full precision. While a heap is filled, the resulting overlap can grow
-/// to half of this value. With a smaller value, heaps would be reported. With a larger value, errors of the contact
-/// solver would not be found. Local: a tolerance of the audit, which does not affect the run.
+/// iterations of the contact solver end before full precision. While a pile of spheres grows, the resulting overlap can
+/// grow to half of this value. With a smaller value, piles would be reported. With a larger value, errors of the
+/// contact solver would not be found. Local: a tolerance of the audit, which does not affect the run.
 inline constexpr double kMostPlannedOverlap = 0.01;
 
 /// Largest tolerated overlap, divided by the smaller radius, if all impacts are resolved sequentially. The value allows

@@ -23,7 +23,7 @@
 
 namespace ricochet {
 
-/// A collision world, with data that only some queries need. These data are built by the first such query.
+/// A collision world, with additional data for some queries. The first query that needs such data builds them.
 struct CollisionQueries::Impl {
     explicit Impl(std::shared_ptr<const CollisionWorld> collision_world) : world(std::move(collision_world)) {}
 
@@ -42,8 +42,8 @@ private:
 
 namespace {
 
-/// Relative excess of a ray's segment over the distance to the farthest surface, so that rounding does not cut off a
-/// surface. Local, because the exact test of a segment decides.
+/// Relative margin by which a ray's segment extends beyond the farthest surface, so that rounding does not exclude a
+/// surface. Local, because the exact test of the segment decides.
 constexpr double kBeyond = 0x1p-20;
 
 void require_position(const Vec3& p, const char* what) {
@@ -135,7 +135,7 @@ std::optional<RayHit> CollisionQueries::first_hit(const Vec3& origin, const Vec3
     const std::optional<Contact> contact = find_first_contact(geometry, {path, 0.0}, scratch).contact;
     if (!contact) return std::nullopt;
     const double distance = contact->time * longest;
-    // From very far away, rounding of a shape decides which side its normal faces.
+    // If the origin is very far away, rounding can give the normal of a shape the wrong sign.
     const ContactSurface& hit = contact->first();
     const Vec3 normal = dot(hit.normal, along) > 0.0 ? -hit.normal : hit.normal;
     return RayHit{distance, start + distance * along, normal, world.name_of(hit.surface)};

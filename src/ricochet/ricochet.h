@@ -1,5 +1,5 @@
 /// \file
-/// Includes all public headers of the library. Each can also be included by itself.
+/// Includes all public headers of the library. Each header can also be included by itself.
 #pragma once
 
 #include "ricochet/collision/collider.h"

@@ -16,8 +16,8 @@
 namespace ricochet {
 namespace {
 
-/// Returns true if particle i takes part in energies. A state that is not finite counts as frozen, because the next
-/// step will freeze it.
+/// Returns true if energies include particle i. A particle with a non-finite state is treated as frozen, because the
+/// next step will freeze it.
 bool has_energy(const Particles& p, std::size_t i) {
     return p.frozen[i] == 0 && is_finite(p.position[i]) && is_finite(p.velocity[i]);
 }
@@ -110,11 +110,12 @@ TriangleTotals Simulation::triangle_totals(std::size_t i) const {
     TriangleTotals result;
     const SurfaceTotals& totals = impl().recorder.totals();
     if (totals.empty()) return result;
-    // Adds the weights of sleeping particles to the totals for the time of this call. They are removed exactly.
+    // The weights of sleeping particles are added to the totals only during this call. They are removed exactly at the
+    // end.
     impl().mover.add_weights(time(), 1.0);
     const ColliderList& list = impl().scene.list();
     for (SurfaceId surface = list.first_surface_of(i); surface < list.first_surface_of(i + 1); ++surface) {
-        // All parts of a shape share one entry.
+        // All surfaces of one shape share one entry.
         const std::size_t at = list.name_of(surface).triangle;
         result.hits.resize(at + 1);
         result.impulse.resize(at + 1);
@@ -168,7 +169,8 @@ double Simulation::kinetic_energy() const {
             const std::uint32_t i = order[k];
             if (!has_energy(particles, i)) continue;
             const double r = particles.radius[i];
-            const double turning = 0.4 * r * r * length_squared(particles.spin[i]);  // solid sphere, 2/5 m r^2
+            // Inertia of a solid sphere, 2/5 m r^2.
+            const double turning = 0.4 * r * r * length_squared(particles.spin[i]);
             sum += 0.5 * particles.mass[i] * (length_squared(particles.velocity[i]) + turning);
         }
         return sum;

@@ -55,7 +55,7 @@ void ParticleSystem::assign(const Particles& particles, std::span<const std::uin
 }
 
 void ParticleSystem::expect_reactions(std::span<const Vec3> reactions) {
-    require_same_length(reactions.size(), size(), "pushes on the members of a system");
+    require_same_length(reactions.size(), size(), "reactions on the members of a system");
     for (std::size_t k = 0; k < size(); ++k) constants_[k].reaction = reactions[k];
 }
 

@@ -192,7 +192,7 @@ void read_named_curves(const SceneContext& context, const SimulationSetup& setup
         if (attribute->components != components) {
             context.diagnostics().error(
                 named.name_location, curve.path(),
-                fmt::format("the attribute has {} components, it belongs into \"{}\"", attribute->components,
+                fmt::format("the attribute has {} components, it belongs in \"{}\"", attribute->components,
                             components == 3 ? "attributes" : "vector_attributes"));
         } else if (components == 3) {
             emitter.curves.push_back({named.name, vector_curve_of(curve, context.diagnostics()), of_lifetime});

@@ -127,8 +127,8 @@ std::optional<std::string> doubly_filled(const SimulationSetup& setup, const std
             ? fmt::format("the mesh \"{}\" crosses itself, or nests shells that are wound alike", shares.first)
             : fmt::format("the colliders \"{}\" and \"{}\" overlap", shares.first, shares.second);
     return fmt::format(
-        "{}: some {:.2g} % of the inside of the body's colliders counts more than once in its mass, centre and "
-        "inertia; "
+        "{}: about {:.2g} % of the inside of the body's colliders is included more than once in its mass, centre "
+        "and inertia; "
         "let them touch only, reverse the inner shell of a cavity, or give \"mass\", \"center\" and \"inertia\"",
         where, 100.0 * share);
 }

@@ -231,14 +231,15 @@ void warn_of_walls_along_flows(const SceneContext& context, const SimulationSetu
     if (setup.options.flow == nullptr) return;
     for (const NamedObject& named : context.root().named_objects("materials")) {
         if (!(named.view.read<Material>().absorption > 0.0)) continue;
-        context.warn(named.view, "absorption", "a flow carries the particles, it does nothing: walls \"stop\" them");
+        context.warn(named.view, "absorption",
+                     "a flow carries the particles, so this key has no effect: walls \"stop\" them");
     }
     for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
         const auto& rule = setup.emitters[k].parent;
         if (!rule || !rule->share || rule->on != BirthEvent::impact) continue;
         context.warn(context.objects("emitters")[k], "on",
-                     "a flow carries the particles, their impacts have no impulse and none is shared out: nothing is "
-                     "born here; \"share\": false bears at every impact");
+                     "a flow carries the particles, so impacts have no impulse and no parent is shared out: this "
+                     "emitter never emits; with \"share\": false it emits at every impact");
     }
 }
 

@@ -221,9 +221,10 @@ void check_clouds(const SceneContext& context, const SimulationSetup& setup) {
                fmt::format("the response \"{}\", expected \"exact\"", name_of(options.response)));
         refuse(options.flow != nullptr, "a flow that carries the particles, expected \"motion\": \"forces\"");
         refuse(options.particle_contacts.has_value(),
-               "\"particle_contacts\": spheres of clouds would have to push their parents; leave one of both out");
+               "\"particle_contacts\": contacts of a cloud would have to act on its parent; leave out one of the two");
         refuse(!setup.springs.empty() || !context.objects("particle_forces").empty(),
-               "springs and forces between particles, which would have to act on parents too; leave one of both out");
+               "springs and forces between particles, which would also have to act on the parent; leave out one of "
+               "the two");
         refuse(!setup.bodies.empty(),
                "a frame's \"body\", which impulses move: give that frame \"motions\", or leave out the cloud");
         refuse(std::any_of(setup.colliders.begin(), setup.colliders.end(), is_deforming),

@@ -217,7 +217,7 @@ private:
                                        name_of(setup_.options.response)));
         } else if (setup_.options.flow) {
             context_.error(view, "deformation",
-                           "particles that a flow carries know no meshes that deform, expected none");
+                           "particles that a flow carries cannot hit meshes that deform, expected none");
         }
     }
 

@@ -174,8 +174,8 @@ void attach(const SceneContext& context, const ObjectView& view, const Simulatio
     }
     if (view.type() == "child") {
         context.error(view, "frame",
-                      "children are born where their parents are, expected an emitter of another kind, or a \"cloud\", "
-                      "which goes with its parent");
+                      "children are born at the positions of their parents, expected an emitter of another kind, or a "
+                      "\"cloud\", which follows its parent");
         return;
     }
     if (!is_frame_named(context, view, *setup.frames)) return;

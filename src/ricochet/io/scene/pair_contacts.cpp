@@ -159,15 +159,15 @@ void check_particle_contacts(const SceneContext& context, const SimulationSetup&
            fmt::format("the response \"{}\", expected \"exact\"", name_of(setup.options.response)));
     refuse(setup.options.flow != nullptr, "a flow that carries the particles, expected \"motion\": \"forces\"");
     refuse(!setup.springs.empty() && setup.options.integrator.kind == IntegratorKind::implicit_euler,
-           "springs and the integrator \"implicit_euler\", whose equations do not know impacts of spheres: expected an "
-           "explicit one, for example \"velocity_verlet\"");
+           "springs and the integrator \"implicit_euler\", whose equations do not include impacts of spheres: expected "
+           "an explicit one, for example \"velocity_verlet\"");
     refuse(!setup.bodies.empty(),
            "a frame's \"body\", which impulses move: give that frame \"motions\", or leave out particle_contacts");
     const bool is_pulled = !setup.springs.empty() || !context.objects("particle_forces").empty();
     if (is_pulled && setup.options.particle_contacts->method == PairMethod::events) {
         context.error(context.root().object("particle_contacts"), "method",
                       "found \"events\" beside springs or forces between particles, expected \"auto\": these press "
-                      "spheres together, and nothing holds them where each impact is for itself");
+                      "spheres together, and \"events\" resolves only single impacts");
     }
     const auto is_point = [](const Particle& particle) { return particle.radius == 0.0; };
     const auto emits_points = [](const EmitterDescription& emitter) {

@@ -127,11 +127,11 @@ void check_company(const SceneContext& context, const SimulationSetup& setup) {
     if (setup.options.flow) refuse("a flow carries the particles, forces between them would do nothing: expected none");
     if (setup.options.integrator.kind == IntegratorKind::implicit_euler) {
         refuse(
-            "the equations of the integrator implicit_euler do not hold forces between particles: expected another, "
-            "for example velocity_verlet");
+            "the equations of the integrator implicit_euler do not include forces between particles: expected another "
+            "integrator, for example velocity_verlet");
     }
     if (!setup.bodies.empty()) {
-        refuse("beside bodies that impulses move there are no forces between particles: expected none");
+        refuse("forces between particles cannot be combined with bodies that impulses move: expected none");
     }
 }
 

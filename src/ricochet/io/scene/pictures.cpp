@@ -201,7 +201,7 @@ void check_stretch(const SceneContext& context, const ObjectView& view, const Pi
     }
     if (picture.stretch->impact > 0.0 && !has_contact_log) {
         context.error(view.object("stretch"), "impact",
-                      "pictures know impacts from the contact log only, expected \"output\": {\"contacts\": true}");
+                      "pictures read impacts from the contact log, expected \"output\": {\"contacts\": true}");
     }
 }
 
@@ -330,8 +330,8 @@ static void build_drawings(const SceneContext& context, SceneDescription& scene)
         if (drawing.particles == "streaks" && !(scene.picture && scene.picture->shutter > 0.0)) {
             context.warn(
                 view, "particles",
-                "streaks are as long as the shutter is open, and \"picture\": {\"shutter\": ...} does not open "
-                "it: they are spheres, unless `ricochet render --shutter` says otherwise");
+                "streaks are drawn while the shutter is open, but \"picture\": {\"shutter\": ...} does not open it: "
+                "particles are drawn as spheres, unless `ricochet render --shutter` opens it");
         }
         scene.drawings.push_back(std::move(drawing));
     }

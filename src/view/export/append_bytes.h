@@ -1,5 +1,5 @@
 /// \file
-/// Conversion of numbers to the bytes of a little-endian file.
+/// Appending of numbers to the bytes of a little-endian file.
 #pragma once
 
 #include <bit>
@@ -8,7 +8,7 @@
 
 namespace ricochet {
 
-/// Appends the bytes of a value in its memory layout.
+/// Appends the bytes of a value as they are in memory.
 template <class Value>
 void append_bytes(std::string& bytes, const Value& value) {
     static_assert(std::endian::native == std::endian::little, "files are little-endian, and so is the memory");

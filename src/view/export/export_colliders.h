@@ -16,25 +16,27 @@ namespace ricochet {
 struct ExportCollider {
     std::string name;          ///< name in the scene
     std::uint32_t number = 0;  ///< index in the run
-    bool moves = false;        ///< true also if it deforms
+    bool moves = false;        ///< moves or deforms
     ColliderLooks looks{};
-    /// Mesh in world coordinates, in m; of a moving collider as it is in the first frame. A plane is a square.
+    /// Mesh in world coordinates, in m. The mesh of a moving collider has its position in the first frame. A plane is a
+    /// square.
     TriangleMesh mesh;
 };
 
-/// Reads the colliders, and lists the frames that contain all moving colliders. The last frame of a killed run can
-/// lack them.
+/// Colliders of a run, and the frames that contain all moving colliders. If a run was killed, its last frame can lack
+/// the moving colliders.
 class ExportColliders {
 public:
-    /// Throws InputError if files contradict each other, or if no frame contains the moving colliders.
+    /// Reads the colliders. Throws InputError if files contradict each other, or if no frame contains the moving
+    /// colliders.
     explicit ExportColliders(const RunFolder& folder);
 
     [[nodiscard]] const std::vector<ExportCollider>& all() const { return colliders_; }
     [[nodiscard]] bool any_moves() const { return any_moves_; }
-    /// Returns the frames that contain all colliders; there is at least one.
+    /// Returns the frames that contain all moving colliders. There is at least one such frame.
     [[nodiscard]] const std::vector<FrameFile>& frames() const { return frames_; }
-    /// Returns the moving colliders at a frame, by their indices, in world coordinates. Throws InputError if one is
-    /// missing or has other triangles than in the first frame.
+    /// Returns the meshes of the moving colliders in a frame, by collider index, in world coordinates. Throws
+    /// InputError if a collider is missing or its triangles differ from the first frame.
     [[nodiscard]] std::map<std::uint32_t, TriangleMesh> moving(const FrameFile& frame) const;
 
 private:
@@ -43,11 +45,11 @@ private:
     bool any_moves_ = false;
 };
 
-/// A generator of file names that are unique even on file systems that ignore case.
+/// Generator of file names that are unique even on file systems that ignore case.
 class ExportNames {
 public:
-    /// Returns the stem for a name: plain_file_name(), with a number if one of its files would reuse a name.
-    /// endings: endings of all files that share the stem.
+    /// Returns the stem of the file names for `name`: plain_file_name(name), with a number appended if a file name is
+    /// already used. `endings` lists the endings of all files that share the stem.
     [[nodiscard]] std::string take(const std::string& name, const std::vector<std::string>& endings);
     /// Returns all file names generated so far, in order.
     [[nodiscard]] const std::vector<std::string>& files() const { return files_; }

@@ -26,7 +26,7 @@ namespace {
 constexpr const char* kContactTable = "contacts.csv";
 constexpr const char* kTriangleTable = "triangles.csv";
 
-/// Units of arrays, by name of the array.
+/// Units of arrays, as pairs of array name and unit.
 using Units = std::span<const std::pair<std::string_view, std::string_view>>;
 
 constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kParticleUnits = {{{"velocity", "m/s"},
@@ -49,7 +49,7 @@ std::string unit_of(const std::string& array, Units units) {
     return found == units.end() ? "" : fmt::format(" [{}]", found->second);
 }
 
-/// Names of a table's columns, made unique.
+/// Header line of a table. Column names are made unique.
 class Header {
 public:
     void add(const std::string& name) {
@@ -100,7 +100,7 @@ void write_particles(const std::filesystem::path& path, const VtkPolyData& frame
     file.commit();
 }
 
-/// Writes the contact log as one table.
+/// Writer of the contact log as one table.
 class ContactTable {
 public:
     ContactTable(std::filesystem::path path, const RunInfo& info) : path_(std::move(path)), info_(info) {}
@@ -129,7 +129,7 @@ private:
         return header.text();
     }
 
-    // Collider number and name are -1 and empty for impacts between two particles.
+    // For an impact between two particles, the collider number is -1 and its name is empty.
     void add(const VtkPolyData& rows, std::size_t i) {
         for (const VtkArray& array : rows.point_arrays) {
             const auto* const colliders = std::get_if<std::vector<std::uint32_t>>(&array.values);
@@ -152,7 +152,7 @@ private:
     std::optional<CsvFile> file_;
 };
 
-/// Writes the rows of one collider's triangles. Columns stay empty if the file has no such array.
+/// Writer of the rows of one collider's triangles. If the collider's file lacks an array, its columns stay empty.
 class TriangleRows {
 public:
     TriangleRows(const VtkPolyData& data, std::uint32_t number, std::string name, std::string_view type)
@@ -174,8 +174,8 @@ public:
         return header.text();
     }
 
-    // Planes, balls and cylinders have one row, because each of their triangles carries the totals of the whole
-    // surface.
+    // Planes, spheres and cylinders have one row, because the arrays store the total of the whole surface for each
+    // triangle.
     void write(CsvFile& file, ImpulseSizes& sizes) const {
         const std::size_t rows = std::min<std::size_t>(data_.triangles.size(), is_one_surface_ ? 1 : SIZE_MAX);
         for (std::size_t t = 0; t < rows; ++t) {
@@ -208,7 +208,7 @@ private:
         values == nullptr ? file.skip(fields) : file.add((*values)[t]);
     }
 
-    // Adds a number and its name.
+    // Adds the number of the triangle's group or material, and the name for this number.
     void add_name(CsvFile& file, std::string_view array, std::string_view texts, std::size_t t) const {
         const auto* const numbers = values_of<std::uint32_t>(array);
         const std::vector<std::string>* const names = find_texts(data_, texts);
@@ -243,10 +243,10 @@ private:
     bool is_one_surface_ = false;
 };
 
-/// Sums over all triangles, for the notes of the report.
+/// Sums over the triangles of all colliders, for the notes of the report.
 struct TriangleSums {
-    ImpulseSizes sizes;         ///< impulses by their origin
-    std::optional<double> end;  ///< end of the totals, in s, if it is before the last frame
+    ImpulseSizes sizes;         ///< sums of the magnitudes of impulses, by impacts and by lasting contact
+    std::optional<double> end;  ///< time, in s, at which the totals end, if it is before the last frame
 };
 
 TriangleSums write_triangles(const std::filesystem::path& path, const RunFolder& folder) {

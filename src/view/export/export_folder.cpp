@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kTitle = "ricochet export: a later export into this folder replaces these files";
 
-// Returns true for the name of a file in the folder itself, without a path.
+// Returns true if the name has no path, so that it names a file directly in the folder.
 bool is_file_name(const std::string& name) {
     return !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos;
 }

@@ -10,15 +10,15 @@ namespace ricochet {
 
 inline constexpr const char* kExportMarkerFile = ".ricochet-export";  ///< lists the files of an export
 
-/// A folder that is new, empty, or contains an earlier export. Only the files of that export are replaced. The folder
-/// of a run is refused, so that a run is never exported into itself.
+/// Target folder that is new, empty, or contains an earlier export. Only the files of the earlier export are replaced.
+/// The folder of a run is refused, so that an export never overwrites a run.
 class ExportFolder {
 public:
     /// Checks the folder without changing it. Throws InputError if the path cannot be the target of an export.
     explicit ExportFolder(std::filesystem::path path);
 
     /// Creates the folder, removes the files of an earlier export, and records the names of the files to be written.
-    /// Throws RunError if the system refuses.
+    /// Throws RunError if the file system reports an error.
     void begin(const std::vector<std::string>& files);
     [[nodiscard]] std::filesystem::path file(const std::string& name) const { return path_ / name; }
 

@@ -22,9 +22,9 @@ namespace {
 constexpr const char* kObj = ".obj";
 constexpr const char* kPc2 = ".pc2";
 
-/// Largest deviation of a frame's time from the even spacing, relative to the spacing.
-/// Reason: times are rounded sums of time steps. The last frame deviates far more if the steps do not fit the run's
-/// duration.
+/// Largest deviation of a frame's time from even spacing, relative to the spacing.
+/// Reason: times are rounded sums of time steps, which deviate far less. The last frame deviates far more if the run's
+/// duration is not a multiple of the spacing.
 constexpr double kSameTime = 1e-6;
 
 const std::vector<std::int64_t>& ids_of(const VtkPolyData& frame, const FrameFile& file) {
@@ -34,17 +34,17 @@ const std::vector<std::int64_t>& ids_of(const VtkPolyData& frame, const FrameFil
     return *ids;
 }
 
-/// Properties of the frames that must be known before the first is written.
+/// Properties of the frames that must be known before the first sample is written.
 struct Survey {
     std::vector<FrameFile> frames;  ///< evenly spaced in time
     double start = 0.0;             ///< time of the first frame, in s
     double spacing = 0.0;           ///< time between frames, in s
-    std::size_t left_out = 0;       ///< number of frames at other times
+    std::size_t left_out = 0;       ///< number of frames that are not evenly spaced
     bool same_particles = true;
-    std::string why_not;  ///< description of the first frame with other particles
+    std::string why_not;  ///< description of the first frame that has other particles than the run's first frame
 };
 
-// Returns the median time between two frames.
+// Returns the median time between consecutive frames.
 double usual_spacing(const std::vector<double>& times) {
     std::vector<double> gaps;
     for (std::size_t k = 1; k < times.size(); ++k) gaps.push_back(times[k] - times[k - 1]);
@@ -53,8 +53,8 @@ double usual_spacing(const std::vector<double>& times) {
     return *middle;
 }
 
-// Selects evenly spaced frames, as the samples of a cache must be. Frames at other times, written at an interruption or
-// at the end of a run, are left out.
+// Selects frames that are evenly spaced in time, because a cache requires evenly spaced samples. An interruption or the
+// end of a run can write frames at other times; these frames are left out.
 void choose_frames(const std::vector<FrameFile>& files, const std::vector<double>& times, Survey& survey) {
     if (times.size() < 2) {
         throw InputError(
@@ -79,7 +79,7 @@ void choose_frames(const std::vector<FrameFile>& files, const std::vector<double
         }
     }
     survey.left_out = times.size() - survey.frames.size();
-    // Computed over the whole range, so that rounding of single times does not matter.
+    // The spacing is computed over the whole range, so that the rounding of each time has little effect.
     if (survey.frames.size() > 1)
         survey.spacing = (last - survey.start) / static_cast<double>(survey.frames.size() - 1);
 }
@@ -104,10 +104,10 @@ Survey survey_of(const std::vector<FrameFile>& files) {
     return survey;
 }
 
-/// A mesh or set of points that moves, with its cache.
+/// A moving collider or the particles, with their cache.
 struct Cached {
     std::string stem;
-    std::optional<std::uint32_t> collider;  ///< collider index; nothing: the particles
+    std::optional<std::uint32_t> collider;  ///< collider index; std::nullopt: the particles
     std::size_t points = 0;
     std::unique_ptr<PointCacheWriter> cache = nullptr;
 };
@@ -144,7 +144,7 @@ public:
     }
 
 private:
-    // Writes the static meshes, and the moving meshes as they are in the first sample.
+    // Writes all meshes. Moving meshes have their position of the first sample.
     void write_meshes(const ExportFolder& target) {
         if (survey_.same_particles) {
             const TriangleMesh points{read_frame(survey_.frames.front().path).points, {}};
@@ -186,7 +186,7 @@ private:
     Survey survey_;
     ExportNames names_;
     std::string particles_stem_;
-    std::vector<std::string> stems_;  // of the colliders, in order
+    std::vector<std::string> stems_;  // stems of the file names, by collider
     std::vector<Cached> cached_;
 };
 

@@ -37,7 +37,7 @@ std::vector<std::filesystem::path> pieces_of(const std::filesystem::path& path) 
         is_closed |= tag->name == "/VTKFile";
         if (tag->name != "Piece") continue;
         const std::string& name = detail::attribute_of(source, *tag, "Source");
-        // Only the run's own files are opened.
+        // Only pieces of this run's frames are opened, so that an index file cannot name other files.
         if (!step_of_piece_file(name)) source.refuse(fmt::format("the piece {} is none of a frame", name));
         if (!names.insert(name).second) source.refuse(fmt::format("the piece {} is named twice", name));
         pieces.push_back(path.parent_path() / name);

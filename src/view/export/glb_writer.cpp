@@ -32,8 +32,8 @@ constexpr double kGlassAlpha = 0.25;
 Vec3 y_up(const Vec3& p) { return {p.x, p.z, -p.y}; }
 Json list_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-// Returns the unit ball that shows a particle, with triangles wound outward. It is coarse, because thousands of copies
-// may be drawn.
+// Returns the mesh of the unit sphere that represents a particle, with outward triangle normals. The mesh is coarse,
+// because programs may draw thousands of copies.
 TriangleMesh coarse_ball() {
     constexpr std::uint32_t kSides = 12;
     constexpr std::uint32_t kBelts = 6;
@@ -59,8 +59,8 @@ TriangleMesh coarse_ball() {
     return ball;
 }
 
-// Removes the vertices without a triangle. Cloth has all particles of its frame as vertices. Distant ones would shift
-// the centre, and the remaining coordinates would lose precision.
+// Removes vertices that belong to no triangle. The mesh of a cloth has all particles of its frame as vertices. Distant
+// particles outside the cloth would shift the centre, and the coordinates relative to it would lose precision.
 TriangleMesh without_loose_vertices(const TriangleMesh& mesh) {
     std::vector<std::uint32_t> numbers(mesh.vertices.size(), 0);
     for (const Triangle& triangle : mesh.triangles) {
@@ -113,7 +113,7 @@ public:
         Json primitive;
         const std::size_t points = add_points(ball.vertices, {});
         primitive["attributes"]["POSITION"] = points;
-        primitive["attributes"]["NORMAL"] = points;  // equal to the positions, since the ball has unit radius
+        primitive["attributes"]["NORMAL"] = points;  // equal to the positions, because the sphere has unit radius
         primitive["indices"] = add_indices(ball.triangles);
         primitive["material"] = add_material({.name = "particles", .mesh = {}, .color = {}});
         const std::size_t mesh = add_mesh("particle", std::move(primitive));

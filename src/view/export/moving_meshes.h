@@ -1,5 +1,5 @@
 /// \file
-/// Private to the library: reader of the moving colliders in a run's files.
+/// Private to the library: reader of a frame's moving colliders.
 #pragma once
 
 #include <cstdint>

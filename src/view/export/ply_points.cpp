@@ -18,10 +18,11 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kAxes = {"_x", "_y", "_z"};
 
-// Property names of one element, made unique.
+// Generator of unique property names of one element.
 class PropertyNames {
 public:
-    // Reserves a valid name close to the wanted one, together with each of the endings, and returns it.
+    // Returns a valid name similar to the wanted name, such that the name with each of the endings is unused. Marks
+    // these names as used.
     std::string take(const std::string& wanted, const std::vector<std::string_view>& endings) {
         std::string base = wanted.empty() ? "attribute" : wanted;
         // Spaces separate the words of the header, so names must not contain them.
@@ -42,7 +43,7 @@ private:
 struct Column {
     std::string type;
     std::vector<std::string> names;
-    std::size_t offset = 0;  // byte offset within a point
+    std::size_t offset = 0;  // byte offset within a row
     const VtkArray* array = nullptr;
 };
 
@@ -59,7 +60,7 @@ std::string type_of(const VtkArray& array) {
 
 std::size_t size_of(const std::string& type) { return type == "uchar" ? 1 : type == "uint" ? 4 : 8; }
 
-// Converts the points of a frame to rows of bytes.
+// Table of a frame's points. Each row has the bytes of one point.
 class PointTable {
 public:
     explicit PointTable(const VtkPolyData& frame) : frame_(frame) {

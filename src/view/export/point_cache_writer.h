@@ -1,5 +1,5 @@
 /// \file
-/// Writer of point caches in the PC2 format, which geometry/mesh/point_cache.h describes.
+/// Writer of point caches in the PC2 format (see geometry/mesh/point_cache.h).
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,16 @@
 
 namespace ricochet {
 
-/// Writes a cache sample by sample, with frames numbered from 0. The file appears under its name when it is complete.
+/// Writer of a cache, sample by sample. The frames of the cache are numbered from 0. The file appears under its name
+/// when the cache is complete.
 class PointCacheWriter {
 public:
-    /// Throws InputError for counts that the format cannot store (points 1 to 2147483647, samples 2 to 2147483647).
-    /// Also throws like AtomicFile.
+    /// Opens the file and writes its header. Throws InputError for counts outside the range of the format (1 to
+    /// 2147483647 points, 2 to 2147483647 samples). Also throws like AtomicFile.
     PointCacheWriter(const std::filesystem::path& path, std::uint64_t points, std::uint64_t samples);
 
-    /// Writes one sample with the announced number of points. Throws InputError for another number of points and for a
-    /// coordinate that does not fit single precision. Throws RunError if the disk write fails.
+    /// Writes one sample. Throws InputError if its number of points differs from `points`, or if a coordinate exceeds
+    /// the range of single precision. Throws RunError if the disk write fails.
     void add(const std::vector<Vec3>& sample);
     /// Completes the file. Call it once, after all samples. Throws RunError if the disk write fails.
     void commit();

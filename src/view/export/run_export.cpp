@@ -49,8 +49,8 @@ void add_colliders(const RunFolder& folder, const FrameFile& frame, GlbScene& sc
     if (hidden > 0) report.notes.push_back(fmt::format("colliders that the scene hides are left out: {}", hidden));
 }
 
-// Adds particles with a radius as spheres and all others as points. If the spheres are too many, all particles become
-// points.
+// Adds particles with a radius as spheres and all other particles as points. If there are too many spheres, all
+// particles become points.
 void add_particles(VtkPolyData frame, GlbScene& scene, ExportReport& report) {
     const std::vector<double>* const radii = radii_of(frame);
     std::size_t lost = 0;
@@ -78,7 +78,7 @@ void add_particles(VtkPolyData frame, GlbScene& scene, ExportReport& report) {
     }
 }
 
-// An export to PLY: names of its files, and the writing.
+// Writer of an export to PLY. Chooses the file names before it writes the files.
 class PlyExport {
 public:
     PlyExport(const RunFolder& folder, ExportNumbers numbers) : colliders_(folder) {
@@ -127,7 +127,7 @@ private:
     ExportColliders colliders_;
     ExportNames names_;
     std::vector<std::string> frame_endings_;
-    std::vector<std::string> stems_;  // of the colliders, in order
+    std::vector<std::string> stems_;  // stems of the file names, by collider
 };
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kOrders = 3;
 
-// Returns the earlier values, reordered to the rows of this frame.
+// Returns the earlier values in the row order of this frame, with 0 for new rows.
 Levels moved(const Levels& values, const std::vector<std::uint32_t>& parent) {
     Levels result(parent.size(), 0);
     for (std::size_t row = 0; row < parent.size(); ++row) {

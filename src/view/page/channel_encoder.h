@@ -1,6 +1,6 @@
 /// \file
-/// Channels of numbers of particles (or vertices) over the frames of a run, encoded as differences to predictions from
-/// earlier frames.
+/// Encoder of one number per particle (or per vertex) over the frames of a run. It encodes the differences to
+/// predictions from earlier frames.
 #pragma once
 
 #include <array>
@@ -16,23 +16,23 @@ namespace ricochet {
 struct RowHistory {
     static constexpr std::uint32_t kNew = 0xffffffffU;
 
-    std::vector<std::uint32_t> parent;  ///< row of the same particle in the previous frame; kNew if it did not exist
-                                        ///< there
-    std::vector<std::uint8_t> known;    ///< number of consecutive earlier frames with this particle, at most 3
+    /// Row of the same particle in the previous frame; kNew if the previous frame lacks the particle.
+    std::vector<std::uint32_t> parent;
+    std::vector<std::uint8_t> known;  ///< number of consecutive earlier frames with this particle, at most 3
 
-    /// Advances to a frame with the given parents.
+    /// Advances to the next frame. `parents` becomes its `parent`.
     void follow(std::vector<std::uint32_t> parents);
-    /// Advances to a frame with the same rows as before. If the count differs, all `count` rows are new.
+    /// Advances to the next frame, which has the same rows. If `count` differs from the previous number of rows, all
+    /// rows are new.
     void follow_same(std::size_t count);
 };
 
-/// Encoder of one channel, frame after frame.
-/// The output starts with a byte: the order (0 to 2) of the polynomial through a row's last values, which serves as
-/// prediction. Rows with a shorter history use a lower order.
-/// Then follow the differences, modulo 2^bits, with 0, -1, 1, -2, ... numbered 0, 1, 2, 3, .... All low bytes come
-/// first, then all high bytes if there are more than 8 bits.
-/// A new row's prediction is the value of the preceding row of its frame. The first row's prediction is 0. The decoder
-/// is in web/blocks.js.
+/// Encoder of one channel: one integer per row, frame by frame. A polynomial through a row's last values predicts its
+/// next value. Rows with a shorter history use a lower order. The prediction of a new row is the value of the preceding
+/// row in the same frame, or 0 for the first row. The output of a frame consists of the order of the polynomial (0 to
+/// 2) in one byte, and of the differences between values and predictions. Differences are taken modulo 2^bits, and 0,
+/// -1, 1, -2, ... are stored as 0, 1, 2, 3, ... The low bytes of all rows precede the high bytes, which exist only for
+/// more than 8 bits. The decoder is in web/blocks.js.
 class ChannelEncoder {
 public:
     explicit ChannelEncoder(int bits) : bits_(bits) {}
@@ -42,7 +42,7 @@ public:
 
 private:
     int bits_;
-    std::array<Levels, 3> past_;  // by row of the previous frame, latest first
+    std::array<Levels, 3> past_;  // values of the last three frames, latest first, by row of the previous frame
 };
 
 }  // namespace ricochet

@@ -18,19 +18,19 @@
 namespace ricochet {
 namespace {
 
-/// Largest distance of a vertex from its rigidly transformed position, relative to the mesh's size, for a rigid
-/// collider. Reason: frames hold doubles, so a rotated mesh fits to about 1e-15, and smaller deformations are
-/// invisible. A smaller tolerance stores rigid bodies far from the origin vertex by vertex. A larger one loses small
-/// waves.
+/// Largest distance of a vertex from its rigidly transformed position in a rigid collider, relative to the mesh's size.
+/// Reason: deformations below the tolerance are invisible. Frames contain doubles, so rounding moves a rotated vertex
+/// by only about 1e-15. With a smaller tolerance, rigid bodies far from the origin would count as deforming. With a
+/// larger tolerance, small waves would be lost.
 constexpr double kRigidTolerance = 1e-7;
 
-/// Number of particles that are tested for being inside a collider, and the winding number above which a particle is
-/// inside. An open drum counts, a ground below does not.
+/// Largest number of particles that are tested for being inside a collider, and the least winding number of a particle
+/// inside. Particles in an open drum count as inside. Particles above a ground mesh do not.
 constexpr std::size_t kProbes = 24;
 constexpr double kInside = 0.75;
 
-// Maps totals to levels. The scale is logarithmic, because totals span orders of magnitude. For impulses, the largest
-// total divided by 999 is the unit.
+// Maps totals to levels. The scale is log(1 + total / unit), because totals span orders of magnitude. The unit is 1 for
+// counts, and 1/999 of the largest total for impulses.
 PartMap part_map(const VtkPolyData& data, const char* array, bool is_count) {
     const VtkArray* const totals = find_array(data.cell_arrays, array);
     PartMap map;
@@ -47,7 +47,7 @@ PartMap part_map(const VtkPolyData& data, const char* array, bool is_count) {
     return map;
 }
 
-// Three vertices of a mesh that span a right-handed frame of unit vectors.
+// Three vertices of a mesh that define a right-handed frame of unit vectors.
 struct Tripod {
     std::array<std::uint32_t, 3> corners{};
 
@@ -156,7 +156,8 @@ Box3 ColliderParts::box() const {
     return box;
 }
 
-// The files of moving colliders use local coordinates. The frames of the run give their world coordinates.
+// Replaces the meshes of moving colliders by their meshes in the first frame, because the files of moving colliders use
+// local coordinates.
 void ColliderParts::add_moving(const FrameFile& first) {
     std::map<std::uint32_t, TriangleMesh> meshes = read_moving_meshes(first);
     for (const std::size_t index : moving_) {
@@ -199,7 +200,7 @@ void ColliderParts::survey_motion(const std::vector<FrameFile>& frames) {
     }
 }
 
-// Makes a collider transparent if most particles are inside, because it would hide them.
+// Makes a collider transparent if most particles are inside it, because an opaque collider would hide them.
 void ColliderParts::find_glass(const FrameFile& probe) {
     const VtkPolyData frame = read_frame(probe.path);
     std::vector<Vec3> points;

@@ -1,5 +1,5 @@
 /// \file
-/// Colliders of a run for a page: at rest, rigid or deforming.
+/// Colliders of a run for a page, each either at rest, rigid or deforming.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@ namespace ricochet {
 
 enum class PartMotion {
     still,
-    rigid,      ///< rotated and translated, to kRigidTolerance of its size
+    rigid,      ///< rotated and translated, within kRigidTolerance of the mesh's size
     deforming,  ///< any other motion; all vertices are stored in every frame
 };
 
-/// Totals of the triangles: 8-bit levels on a logarithmic scale.
+/// Totals (hits or impulses) of the triangles, as 8-bit levels on a logarithmic scale.
 struct PartMap {
     double largest = 0.0;
     Levels levels;  ///< one per triangle; empty if the run has no totals
@@ -29,17 +29,19 @@ struct PartMap {
 
 struct ColliderPart {
     std::string name;
-    std::uint32_t number = 0;  ///< number in the run
+    std::uint32_t number = 0;  ///< index in the run
     std::uint32_t material = 0;
     PartMotion motion = PartMotion::still;
-    bool is_glass = false;      ///< from its appearance settings, or because it has particles inside: transparent
-    bool is_hidden = false;     ///< from its appearance settings: initially invisible
-    double roughness = 1.0;     ///< from its appearance settings: 0 (a mirror's gloss) .. 1 (matt)
-    bool has_pattern = true;    ///< from its appearance settings: a plane's lines
-    std::optional<Vec3> color;  ///< from its appearance settings, in linear light
-    /// World coordinates in m. For a moving collider, coordinates in the first frame. A plane is a square.
+    /// Transparent; set by the collider's appearance settings, or because the collider contains particles.
+    bool is_glass = false;
+    bool is_hidden = false;     ///< initially invisible; set by the collider's appearance settings
+    double roughness = 1.0;     ///< 0 (mirror) to 1 (matt); set by the collider's appearance settings
+    bool has_pattern = true;    ///< a plane shows lines; set by the collider's appearance settings
+    std::optional<Vec3> color;  ///< in linear light; set by the collider's appearance settings
+    /// Mesh in world coordinates, in m. The mesh of a moving collider has its position in the first frame. A plane is a
+    /// square.
     TriangleMesh mesh;
-    std::optional<Vec3> plane_normal;  ///< for a plane at rest
+    std::optional<Vec3> plane_normal;  ///< set only for a plane at rest
     PartMap hits;
     PartMap impulse;  ///< in N s
     Box3 reach;       ///< bounding box of all its vertices over all frames
@@ -47,8 +49,9 @@ struct ColliderPart {
 
 /// State of the moving colliders in a frame, in the order of the parts.
 struct MovingFrame {
-    std::vector<AffineMap> poses;           ///< of the rigid colliders, relative to their mesh
-    std::vector<std::vector<Vec3>> points;  ///< of the deforming colliders
+    /// Rotation and translation of each rigid collider, relative to ColliderPart::mesh.
+    std::vector<AffineMap> poses;
+    std::vector<std::vector<Vec3>> points;  ///< vertices of each deforming collider
 };
 
 class ColliderParts {

@@ -17,7 +17,7 @@
 namespace ricochet {
 namespace {
 
-constexpr std::uint32_t kThinning = 0x7061'6765;  // stream of the random numbers: "page"
+constexpr std::uint32_t kThinning = 0x7061'6765;  // stream of the random numbers; "page" in ASCII
 
 bool is_kept(std::int64_t id, const RunSurvey& survey, double part) {
     if (part >= 1.0) return true;
@@ -58,7 +58,7 @@ void add_colors(PageFrame& page, const VtkPolyData& frame, const std::vector<std
     std::array<Levels, 3> levels;
     for (const std::uint32_t row : rows) {
         const Vec3& light = (*colors)[row];
-        // Light brighter than the screen is scaled down to keep its hue.
+        // A colour brighter than the screen is scaled down, because clamping each channel would change its hue.
         const double most = std::max({light.x, light.y, light.z, 1.0});
         for (int channel = 0; channel < 3; ++channel) {
             const double part = light[channel] / most;
@@ -68,7 +68,7 @@ void add_colors(PageFrame& page, const VtkPolyData& frame, const std::vector<std
     for (Levels& channel : levels) page.channels.push_back(std::move(channel));
 }
 
-// Adds the rotations, whose coordinates are in [-1, 1].
+// Adds the rotations as channels. Their coordinates are in [-1, 1].
 void add_turns(PageFrame& page, const std::vector<std::array<float, 3>>& turns, const std::vector<std::uint32_t>& rows,
                int bits) {
     const LevelScale scale = turn_scale(bits);
@@ -80,7 +80,7 @@ void add_turns(PageFrame& page, const std::vector<std::array<float, 3>>& turns, 
     }
 }
 
-// Adds the springs. Springs with an end outside the page are left out.
+// Adds the springs. A spring is left out if one of its particles is not on the page.
 void add_springs(PageFrame& page, const VtkPolyData& frame, const std::vector<std::uint32_t>& rows) {
     if (frame.lines.empty() && frame.triangles.empty()) return;
     std::vector<std::uint32_t> new_row(frame.points.size(), RowHistory::kNew);

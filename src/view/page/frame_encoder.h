@@ -18,32 +18,34 @@ namespace ricochet {
 
 /// Level of detail of a run's page.
 struct PageDetail {
-    int position_bits = 16;       ///< bits per coordinate, over the longest edge of the box
-    int value_bits = 16;          ///< bits per attribute, over its range; 8 or 16, see attribute_bits()
+    int position_bits = 16;  ///< bits per coordinate, over the longest edge of the box
+    /// Bits per attribute, over its range: 8 or 16; see attribute_bits() for the exception.
+    int value_bits = 16;
     std::size_t every_frame = 1;  ///< every n-th frame is kept; the last frame is always kept
-    double particles = 1.0;       ///< share of the particles, chosen at random; particles at springs are always kept
+    /// Share of the particles that are kept, chosen at random; particles with springs are always kept.
+    double particles = 1.0;
 
     /// Returns the indices of the frames that are kept, out of `count`.
     [[nodiscard]] std::vector<std::size_t> chosen_frames(std::size_t count) const;
 };
 
-/// Returns the bits of an attribute: `bits`, but 16 for radii. Radii rarely change, so 16 bits cost little. With fewer
-/// bits, radii of small spheres among large ones would be lost in the rounding.
+/// Returns the number of bits of an attribute: 16 for radii, otherwise `bits`. Radii rarely change, so 16 bits cost
+/// little. With fewer bits, rounding would change the radii of small spheres among large ones too much.
 [[nodiscard]] int attribute_bits(const PageAttribute& attribute, int bits);
-/// Returns the levels of an attribute with attribute_bits().
+/// Returns the quantization of an attribute to attribute_bits() bits.
 [[nodiscard]] LevelScale level_scale(const PageAttribute& attribute, int bits);
-/// Returns the levels of a rotation's coordinate.
+/// Returns the quantization of a coordinate of a rotation's quaternion, from -1 to 1.
 [[nodiscard]] LevelScale turn_scale(int bits);
 /// Returns true if every particle has the same value, so that the frames need no bytes for the attribute.
 [[nodiscard]] inline bool is_constant(const PageAttribute& attribute) {
     return attribute.low == attribute.high && !attribute.has_gaps && !attribute.is_cut;
 }
 
-/// One frame in integers.
+/// One frame with all values quantized.
 struct PageFrame {
     std::vector<std::int64_t> ids;
-    std::vector<Levels> channels;  ///< x, y, z; attributes that vary; red, green, blue in sRGB; rotations
-    std::vector<VtkLine> lines;    ///< between rows
+    std::vector<Levels> channels;  ///< x, y, z; attributes that are not constant; red, green, blue in sRGB; rotations
+    std::vector<VtkLine> lines;    ///< springs; ends are rows
     std::vector<Triangle> triangles;
     MovingFrame moving;
     std::uint64_t left_out = 0;  ///< number of particles outside the survey's box
@@ -54,11 +56,11 @@ struct PageFrame {
                                    const ColliderParts& colliders);
 
 /// Encoder of consecutive frames. Each block depends on the previous blocks. Layout of a block:
-/// - Removed rows of the previous frame: their count and gaps.
-/// - New ids: their count and gaps.
+/// - Removed rows of the previous frame: their count, and for each the number of rows skipped before it.
+/// - New ids: their count, and for each the number of ids skipped before it.
 /// - All channels (ChannelEncoder).
-/// - Springs: a byte (0: none, 1: same as in the previous frame, 2: new list), then their count and ends as
-///   differences.
+/// - Springs: a byte (0: none, 1: same as in the previous frame, 2: new list). A new list has the counts of lines and
+///   triangles, and their corners as differences to the preceding corner.
 /// - Moving colliders (MovingEncoder).
 /// The decoder is in web/run.js.
 class FrameEncoder {

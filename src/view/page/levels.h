@@ -13,7 +13,8 @@ namespace ricochet {
 /// One integer per row, below 2^bits.
 using Levels = std::vector<std::uint16_t>;
 
-/// Quantization of a range to levels 0 to largest. If has_gaps is set, the next level means "not a number".
+/// Quantization of a range of values to the levels 0 to `largest`. If has_gaps is set, level `largest` + 1 means "not a
+/// number".
 struct LevelScale {
     double low = 0.0;
     double step = 1.0;
@@ -31,7 +32,8 @@ struct PositionGrid {
 
     [[nodiscard]] LevelScale axis(int axis) const { return {lower[axis], step, largest, false}; }
 };
-/// Returns the largest displacement by rounding to a grid of the given step, in m. It is half the diagonal of a cell.
+/// Returns the largest distance, in m, by which rounding to a grid of the given step moves a point. It is half the
+/// diagonal of a cell.
 [[nodiscard]] inline double rounding_distance(double step) { return 0.5 * std::sqrt(3.0) * step; }
 /// Returns the grid with 2^bits levels along the longest edge of the box.
 [[nodiscard]] PositionGrid position_grid(const Box3& box, int bits);

@@ -1,5 +1,5 @@
 /// \file
-/// Packing of bytes for a page: serialization, compression and encoding as text.
+/// Serialization, compression and encoding as text of the bytes of a page.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ public:
         for (; value >= 0x80; value >>= 7) byte(static_cast<std::uint8_t>(value | 0x80U));
         byte(static_cast<std::uint8_t>(value));
     }
-    /// Appends a signed number: 0, -1, 1, -2, ... are coded as 0, 1, 2, 3, ...
+    /// Appends a signed number as a varint: 0, -1, 1, -2, ... are coded as 0, 1, 2, 3, ...
     void signed_varint(std::int64_t value) {
         varint((static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63));
     }
@@ -38,14 +38,14 @@ private:
     std::string bytes_;
 };
 
-/// Returns the bytes in zlib's format (RFC 1950), which browsers unpack as `deflate`. Throws std::bad_alloc, and
-/// RunError for more than 4 GB.
+/// Returns the bytes in zlib's format (RFC 1950). Browsers call this format `deflate`. Throws std::bad_alloc if memory
+/// is short, and RunError for more than 4 GB.
 [[nodiscard]] std::string deflated(std::string_view bytes);
 
 /// Returns the bytes as base64 text (RFC 4648, with padding).
 [[nodiscard]] std::string base64(std::string_view bytes);
 
-/// Escapes text for HTML: &, <, > and quotes become entities.
+/// Returns the text escaped for HTML: &, <, > and quotes become entities.
 [[nodiscard]] std::string html_text(std::string_view text);
 
 }  // namespace ricochet

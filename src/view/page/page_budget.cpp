@@ -7,12 +7,12 @@
 namespace ricochet {
 namespace {
 
-constexpr std::size_t kFewFrames = 50;    // frames are not thinned below this number before particles are thinned
-constexpr double kFewParticles = 2000.0;  // particles are not thinned below this number
+constexpr std::size_t kFewFrames = 50;    // least number of frames until particles are thinned
+constexpr double kFewParticles = 2000.0;  // least number of particles after thinning
 constexpr std::array kBits = {std::array{16, 16}, std::array{16, 8}, std::array{14, 8}, std::array{12, 8},
                               std::array{11, 8}};  // bits of positions and of attributes
 
-constexpr double kMostOff = 0.1;  // largest displacement by rounding, relative to a sphere's radius
+constexpr double kMostOff = 0.1;  // largest distance by which rounding moves a sphere, relative to its radius
 
 }  // namespace
 
@@ -52,7 +52,7 @@ int needed_position_bits(double radius, double longest_edge) {
 
 std::size_t first_fitting(const std::vector<PageDetail>& ladder, std::size_t begin, double budget,
                           const std::function<double(const PageDetail&)>& bytes) {
-    std::size_t low = begin;  // all entries before this one do not fit
+    std::size_t low = begin;  // no level before this index fits
     std::size_t high = ladder.size();
     if (low < high && bytes(ladder[low]) <= budget) return low;
     ++low;

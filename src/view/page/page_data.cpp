@@ -17,16 +17,18 @@
 namespace ricochet {
 namespace {
 
-constexpr std::size_t kGroup = 8;  // frames that are in memory at the same time
+constexpr std::size_t kGroup = 8;  // number of frames that are in memory at the same time
 
-// An estimate encodes this many samples of consecutive frames. The first frames of a sample depend on little history
-// and do not count.
+// An estimate of the bytes encodes kStretches samples of kStretchFrames consecutive frames each. The first
+// kStretchStart frames of a sample do not count, because the encoder has too few earlier frames to predict their
+// values.
 constexpr std::size_t kStretches = 3;
 constexpr std::size_t kStretchFrames = 5;
 constexpr std::size_t kStretchStart = 2;
 constexpr double kEstimateMargin = 1.03;
 
-// Returns the frames whose moving colliders are recorded. A run killed while writing a frame can lack that file.
+// Returns the frames for which the file of the moving colliders exists. A run that was killed while it wrote a frame
+// can lack this file.
 std::vector<FrameFile> complete_frames(const RunFolder& folder) {
     std::vector<FrameFile> frames = folder.frames;
     const bool any_moves = std::any_of(folder.info.colliders.begin(), folder.info.colliders.end(),
@@ -56,8 +58,8 @@ Camera page_camera(const RunFolder& folder, const RunSurvey& survey, const Colli
     return automatic_camera(subject, folder.info.up, 16.0 / 9.0);
 }
 
-// Returns the rotations of the particles per step. Frames are processed in order, because each rotation continues the
-// previous one.
+// Returns the rotations of the particles by step. Frames are processed in order of time, because each rotation
+// continues the rotation of the previous frame.
 std::map<std::uint64_t, std::vector<std::array<float, 3>>> turns_of(const std::vector<FrameFile>& frames,
                                                                     const PageShapes& shapes) {
     std::map<std::uint64_t, std::vector<std::array<float, 3>>> all;
@@ -71,8 +73,8 @@ std::map<std::uint64_t, std::vector<std::array<float, 3>>> turns_of(const std::v
     return all;
 }
 
-// Returns the least bits of positions from the radii of small spheres. Spheres much smaller than the largest ones are
-// ignored.
+// Returns the least number of bits of positions for the radii of small spheres. Spheres smaller than a quarter of the
+// largest ones are ignored.
 int least_position_bits(const RunSurvey& survey) {
     for (const PageAttribute& attribute : survey.attributes) {
         if (attribute.array != "radius" || survey.box.empty()) continue;
@@ -83,7 +85,7 @@ int least_position_bits(const RunSurvey& survey) {
     return kLeastPositionBits;
 }
 
-// Estimates the bytes of all frames in the page from a few of them.
+// Estimates the bytes of all frames in the page from a few frames.
 double estimated_bytes(const PageSource& source, const PageDetail& detail) {
     const std::vector<std::size_t> chosen = detail.chosen_frames(source.frames.size());
     const bool is_short = chosen.size() <= kStretches * kStretchFrames;
@@ -110,7 +112,7 @@ double estimated_bytes(const PageSource& source, const PageDetail& detail) {
     return kEstimateMargin * bytes * all / rows;
 }
 
-// Returns all frames, or nothing if they need more than `bytes`.
+// Returns all frames, or std::nullopt if they need more than `bytes`.
 std::optional<PageFrames> packed_frames(const PageSource& source, const PageDetail& detail, double bytes,
                                         const std::function<void(double)>& progress) {
     PageFrames result;

@@ -1,5 +1,5 @@
 /// \file
-/// Data of a page: the frames of a run as blocks that fit a budget, and the description for the page's script.
+/// Data of a page: blocks of frames that fit a budget of bytes, and the description of the run for the page's script.
 #pragma once
 
 #include <functional>
@@ -14,26 +14,27 @@
 
 namespace ricochet {
 
-/// A run, loaded for its page.
+/// Data of a run that its page needs.
 struct PageSource {
     const RunFolder& folder;
-    std::vector<FrameFile> frames;  ///< frames that can be shown
+    std::vector<FrameFile> frames;  ///< frames that contain all moving colliders
     ColliderParts colliders;
     RunSurvey survey;
     Camera camera;
 };
 
-/// Reads a run, see write_run_page().
+/// Reads a run. Throws like write_run_page().
 [[nodiscard]] PageSource page_source(const RunFolder& folder, const PageShapes& shapes,
                                      const std::function<void(double)>& progress);
 
-/// Blocks of frames as stored in the page: compressed, as text.
+/// Frames as stored in the page: one block per frame, compressed and encoded as text.
 struct PageFrames {
     PageDetail detail;
     std::vector<std::size_t> chosen;  ///< indices into PageSource::frames
     std::vector<std::string> blocks;
     std::vector<std::size_t> counts;  ///< number of particles in each frame
-    std::uint64_t left_out = 0;       ///< number of particles that are too far from all others, summed over frames
+    /// Number of particles that are not shown because they are too far from all others, summed over the frames.
+    std::uint64_t left_out = 0;
 };
 
 /// Returns the frames with the most detail that fits into the given bytes. Throws InputError with the budget if

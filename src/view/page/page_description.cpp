@@ -88,7 +88,7 @@ ordered_json shapes_json(const PageShapes& shapes, int bits) {
     return {{"of", shapes.of}, {"turnLow", scale.low}, {"turnStep", scale.step}, {"meshes", std::move(meshes)}};
 }
 
-// Returns a colour map as sRGB bytes in hexadecimal digits.
+// Returns samples of a colour map as sRGB bytes in hexadecimal digits.
 std::string map_text(ColorMap map) {
     static constexpr std::string_view kDigits = "0123456789abcdef";
     std::string text;
@@ -113,7 +113,7 @@ ordered_json frames_json(const PageSource& source, const PageFrames& frames) {
     return {{"step", steps}, {"time", times}, {"count", frames.counts}};
 }
 
-// Escapes JSON for a script, so that no text from the run can close the script element.
+// Returns the JSON text with <, > and & escaped, so that no text from the run can close the script element.
 std::string script_text(const ordered_json& json) {
     std::string text;
     for (const char c : json.dump(-1, ' ', true, ordered_json::error_handler_t::replace)) {

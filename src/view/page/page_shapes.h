@@ -1,5 +1,5 @@
 /// \file
-/// Meshes that replace spheres on a page, and their rotation.
+/// Meshes that replace spheres on a page, and the rotations of the particles.
 #pragma once
 
 #include <functional>
@@ -14,8 +14,8 @@ namespace ricochet {
 
 /// Meshes that represent particles on a page instead of spheres.
 struct PageShapes {
-    std::vector<int> of;               ///< index of the mesh for each drawing (0: the picture's), -1: none
-    std::vector<TriangleMesh> meshes;  ///< all points of a mesh are at most 1 away from its origin
+    std::vector<int> of;  ///< index of the mesh by number of the drawing (0: the picture's own drawing); -1: no mesh
+    std::vector<TriangleMesh> meshes;  ///< the vertices of each mesh are at most 1 from its origin
     /// Returns the rotations of the particles of a frame. Frames must be passed in order of time.
     std::function<std::vector<Turn>(const VtkPolyData& frame)> turns;
     std::vector<std::string> notes;  ///< messages about shapes that the page cannot draw

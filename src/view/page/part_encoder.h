@@ -1,5 +1,5 @@
 /// \file
-/// Colliders, encoded as blocks of bytes for the page.
+/// Encoders of colliders as blocks of bytes for the page.
 #pragma once
 
 #include <string>
@@ -11,19 +11,20 @@
 
 namespace ricochet {
 
-/// Encodes a part that a page shows before any frame. The bytes hold vertices (three channels of 16 bits) and corners
-/// of triangles as differences. Channels of 8 bits for hits and impulse follow, if present. The decoder is in
-/// web/blocks.js.
+/// Returns the bytes of a collider's mesh, which the page loads before any frame. First come the vertices as three
+/// channels of 16 bits, then the corners of the triangles as differences to the preceding corner. Channels of 8 bits
+/// for hits and impulses follow, if the run has them. The decoder is in web/blocks.js.
 [[nodiscard]] std::string encoded_part(const ColliderPart& part);
-/// Returns the grid of a part's vertices.
+/// Returns the grid to which a part's vertices are rounded. For a deforming part, it covers all frames.
 [[nodiscard]] PositionGrid part_grid(const ColliderPart& part, int bits);
 
-/// Returns the largest displacement of the page's vertices by rounding, in m. `bits` is the number of bits per
-/// coordinate in frames.
+/// Returns the largest distance, in m, by which rounding moves a vertex of the part on the page. `bits` is the number
+/// of bits per coordinate in frames.
 [[nodiscard]] double told_error(const ColliderPart& part, int bits);
 
-/// Encoder of the moving colliders in a frame's block. A rigid collider takes twelve 32-bit numbers: three rows of the
-/// rotation, each followed by its translation. A deforming collider takes three channels.
+/// Encoder of the moving colliders in a frame's block. The pose of a rigid collider takes twelve 32-bit floats: three
+/// rows of the rotation, each followed by the translation along its axis. The vertices of a deforming collider take
+/// three channels.
 class MovingEncoder {
 public:
     /// `origin` is the page's origin in world coordinates.

@@ -17,7 +17,7 @@
 namespace ricochet {
 namespace {
 
-/// Scripts in loading order: the import name and the file of each.
+/// Script of the page: its name in import statements, and its file.
 struct Module {
     std::string_view name;
     std::string_view file;
@@ -86,7 +86,7 @@ std::vector<std::string> notes_of(const PageSource& source, const PageFrames& fr
     return notes;
 }
 
-// Returns the template with each @NAME@ of the list replaced. Replacement texts are not scanned again.
+// Returns the template with each @NAME@ of the list replaced. Names inside the replacement texts are not replaced.
 std::string filled(std::string_view text, const std::vector<std::pair<std::string_view, std::string_view>>& values) {
     std::string result;
     while (!text.empty()) {
@@ -119,7 +119,7 @@ void check_color(const PageSource& source, const PageOptions& options) {
 }  // namespace
 
 PageReport write_run_page(const RunFolder& folder, const std::filesystem::path& target, const PageOptions& options) {
-    AtomicFile file(target);  // opened first, so that an unwritable name fails before the work
+    AtomicFile file(target);  // opened first, so that an unwritable path fails before the work
     const PageSource source = page_source(folder, options.shapes, [&](double part) { options.progress(0.5 * part); });
     check_color(source, options);
     const std::string modules = module_elements();
@@ -135,8 +135,7 @@ PageReport write_run_page(const RunFolder& folder, const std::filesystem::path& 
                                                {"@BOOT@", page_file("boot.js")},
                                                {"@PARTS@", parts}});
     };
-    // The size of everything except frames is nearly known in advance: each frame adds a line of tags and a few
-    // numbers.
+    // Estimated size of everything except the blocks of frames. Each frame adds a line of tags and a few numbers.
     constexpr double kBytesPerFrame = 100.0;
     const double fixed = static_cast<double>(page_with(page_description(source, {}, options, {})).size()) + 2000.0 +
                          kBytesPerFrame * static_cast<double>(source.frames.size());

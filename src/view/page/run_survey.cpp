@@ -18,14 +18,15 @@ namespace ricochet {
 namespace {
 
 constexpr std::size_t kSampledFrames = 12;
-constexpr std::size_t kSampledParticles = 20'000;  // per frame
-/// Extent of the page beyond the bulk, in diagonals of the bulk's box (and in widths of the bulk's values). Outliers
-/// beyond it are cut, because they would cost all other values their precision.
+constexpr std::size_t kSampledParticles = 20'000;  // number of sampled particles per frame
+/// Margin around the bulk (1st to 99th percentile) of positions and values. The unit is the diagonal of the bulk's box,
+/// or the width of the bulk's range. Outliers beyond the margin are cut, because a larger range would reduce the
+/// precision of all other values.
 constexpr double kReach = 4.0;
-/// Width below which the bulk of values counts as a single value, and nothing is cut around it.
+/// Width below which the bulk of an attribute's values counts as a single value. In this case no outliers are cut.
 constexpr double kNarrow = 1e-9;
 
-// Facts about one array in one frame.
+// Range and sample of one array in one frame.
 struct ArrayFacts {
     double low = std::numeric_limits<double>::infinity();
     double high = -std::numeric_limits<double>::infinity();
@@ -134,7 +135,7 @@ Box3 shown_box(const Box3& all, Box3 bulk) {
 
 void settle(PageAttribute& attribute, ArrayFacts facts) {
     attribute.has_gaps = facts.has_gaps;
-    if (facts.low > facts.high) return;  // no finite value
+    if (facts.low > facts.high) return;  // the attribute has no finite value
     attribute.shown = robust_range(std::move(facts.sample));
     const double width = attribute.shown.high - attribute.shown.low;
     const bool is_narrow = width <= 0.01 * std::fabs(attribute.shown.low) || width < kNarrow;
@@ -145,7 +146,8 @@ void settle(PageAttribute& attribute, ArrayFacts facts) {
         attribute.shown = {attribute.low, attribute.high};
         return;
     }
-    // The colour range stays within the actual values. It begins at 0 if the values are just above 0.
+    // The range of the colour scale stays within the actual values. It begins at 0 if no value is negative and its
+    // lower end is close to 0.
     attribute.shown = {std::max(attribute.shown.low, facts.low), std::min(attribute.shown.high, facts.high)};
     if (facts.low >= 0.0 && attribute.shown.low < 0.25 * attribute.shown.high) attribute.shown.low = 0.0;
 }

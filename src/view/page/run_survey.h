@@ -16,41 +16,42 @@
 
 namespace ricochet {
 
-/// A numeric attribute of the particles that the page can use for colours. Vectors are stored as their length, and
-/// velocity as `speed`.
+/// A numeric attribute of the particles that the page can use for colours. Vectors are replaced by their length. The
+/// velocity is named `speed`.
 struct PageAttribute {
     std::string array;      ///< name of the array in the frames
     std::string name;       ///< name on the page
-    double low = 0.0;       ///< least stored value; lower values are clamped to it
-    double high = 0.0;      ///< largest stored value; equal to low if all values are equal
-    ValueRange shown;       ///< default range of the colours
-    bool is_whole = false;  ///< integers
+    double low = 0.0;       ///< least stored value; lower values are clamped to this value
+    double high = 0.0;      ///< largest stored value; equal to `low` if all values are equal
+    ValueRange shown;       ///< default range of the colour scale
+    bool is_whole = false;  ///< all values are integers
     bool is_cut = false;    ///< some values are outside low..high
     bool has_gaps = false;  ///< some values are not finite
 };
 
 struct RunSurvey {
     Box3 box;     ///< bounding box of the shown particles, in m
-    Vec3 origin;  ///< origin of the page's coordinates, in m; small numbers keep their digits in 32 bits
+    Vec3 origin;  ///< origin of the page's coordinates, in m; near the particles, so that 32-bit coordinates have small
+                  ///< rounding errors
     std::vector<PageAttribute> attributes;
     bool has_colors = false;            ///< particles have their own colours
     bool has_springs = false;           ///< some frames have lines or triangles between particles
     std::vector<double> times;          ///< times of the frames, in s
     std::vector<std::uint64_t> counts;  ///< number of particles per frame
     std::int64_t largest_id = 0;
-    std::vector<std::int64_t> spring_ids;  ///< particles at the ends of springs, ascending
-    std::vector<Vec3> sample;              ///< a sample of the particles over the run
-    /// Rotations of the particles by step, if particles are copies of meshes; otherwise empty. Each entry is the
-    /// vector part of a quaternion whose scalar part is not negative.
+    std::vector<std::int64_t> spring_ids;  ///< ids of the particles with springs, ascending
+    std::vector<Vec3> sample;              ///< positions of some particles in some frames
+    /// Rotations of the particles by step, or empty if particles are spheres. Each entry is the vector part of a unit
+    /// quaternion with a non-negative scalar part.
     std::map<std::uint64_t, std::vector<std::array<float, 3>>> turns;
 
     /// Returns the number of particles, summed over all frames.
     [[nodiscard]] std::uint64_t total() const;
 };
 
-/// Reads every frame. `colliders` is the bounding box of the colliders, so that particles near them never count as too
-/// far away. `progress` receives the finished share. Throws InputError if frames do not belong together or ids are not
-/// ascending.
+/// Reads every frame. `colliders` is the bounding box of the colliders; particles near this box are never left out as
+/// too far away. `progress` receives the finished share. Throws InputError if frames have different arrays or ids are
+/// not ascending.
 [[nodiscard]] RunSurvey survey_run(const std::vector<FrameFile>& frames, const Box3& colliders,
                                    const std::function<void(double)>& progress);
 

@@ -10,7 +10,7 @@
 namespace ricochet {
 namespace {
 
-constexpr double kFirst = 380.0;  // nm
+constexpr double kFirst = 380.0;  // first sampled wavelength, in nm
 constexpr double kStep = 5.0;
 constexpr std::size_t kSamples = 81;
 
@@ -38,7 +38,7 @@ const std::array<Vec3, kSamples>& matching_samples() {
 }  // namespace
 
 Vec3 black_body_xyz(double kelvin) {
-    constexpr double kSecondRadiation = 1.438776877e7;  // h c / k, nm K
+    constexpr double kSecondRadiation = 1.438776877e7;  // second radiation constant h c / k, in nm K
     Vec3 sum;
     if (!(kelvin > 0.0)) return sum;
     for (std::size_t i = 0; i < kSamples; ++i) {

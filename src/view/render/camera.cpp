@@ -11,7 +11,7 @@ namespace ricochet {
 namespace {
 
 constexpr std::size_t kSampledPoints = 50000;
-constexpr double kMargin = 1.06;  // the margin around the subject is 6 %
+constexpr double kMargin = 1.06;  // margin of 6 % around the subject
 
 void append_sample(std::vector<Vec3>& sample, const std::vector<Vec3>& points) {
     const std::size_t stride = points.size() / kSampledPoints + 1;
@@ -48,8 +48,10 @@ std::vector<Vec3> points_to_show(const ViewSubject& subject) {
     return shown;
 }
 
-// Returns the smallest distance at which all points lie between two planes of slope `tangent` through the eye. The
-// condition is |x - shift| <= tangent * (z + distance) for some shift across the view.
+// Returns the smallest distance of the camera at which all points are within its field of view in one direction
+// (`across`). `tangent` is the tangent of half the field of view. The camera can also be shifted along `across`, so the
+// condition is |x - shift| <= tangent * (z + distance) for some shift. Here x and z are the coordinates of a point
+// along `across` and `forward`.
 double fitting_distance(const std::vector<Vec3>& points, const Vec3& across, const Vec3& forward, double tangent) {
     double low = -std::numeric_limits<double>::infinity();
     double high = -std::numeric_limits<double>::infinity();
@@ -62,7 +64,7 @@ double fitting_distance(const std::vector<Vec3>& points, const Vec3& across, con
     return 0.5 * (high + low) / tangent;
 }
 
-// Returns the shift across the view that leaves equal margins on both sides.
+// Returns the shift of the camera along `across` at which the margins on both sides are equal.
 double centering_shift(const std::vector<Vec3>& points, const Vec3& across, const Vec3& forward, double distance) {
     double low = -distance;
     double high = distance;
@@ -87,7 +89,7 @@ double half_height(const Camera& camera) { return std::tan(0.5 * camera.fov_degr
 CameraFrame camera_frame(const Camera& camera) {
     const Vec3 forward = normalized(camera.target - camera.position);
     Vec3 right = cross(forward, camera.up);
-    // If the view is straight up or down, any direction across is valid.
+    // If the camera looks along its up vector, any perpendicular direction is valid.
     if (length(right) < 1e-9) right = tangent_frame(camera.up)[0];
     right = normalized(right);
     return {right, cross(right, forward), forward};
@@ -100,7 +102,8 @@ Camera automatic_camera(const ViewSubject& subject, const Vec3& up, double aspec
     const auto [east, north] = tangent_frame(up);
     Camera camera;
     camera.up = up;
-    // The camera is to the right, in front and above: about 54 degrees around and 31 degrees up.
+    // The camera is to the right of the subject, in front of it and above it. Its azimuth from `east` is about -54
+    // degrees, and its elevation about 31 degrees.
     camera.position = 0.55 * east - 0.75 * north + 0.56 * up;
     camera.target = {0, 0, 0};
     const CameraFrame frame = camera_frame(camera);

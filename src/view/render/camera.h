@@ -1,5 +1,5 @@
 /// \file
-/// Camera, camera frame and automatic views.
+/// Camera, its frame of unit vectors, and automatic choice of a view.
 #pragma once
 
 #include <vector>
@@ -8,18 +8,18 @@
 
 namespace ricochet {
 
-/// A camera. It is a pinhole camera unless its lens has an opening.
+/// Camera: a pinhole camera, or a camera with a lens if `aperture` is above 0.
 struct Camera {
-    Vec3 position;                ///< m
-    Vec3 target;                  ///< m, different from position
-    Vec3 up{0, 0, 1};             ///< of unit length
-    double fov_degrees = 35.0;    ///< vertical field of view, between 1 and 170
-    double aperture = 0.0;        ///< diameter of the lens, in m; 0: everything is in focus
-    double focus_distance = 0.0;  ///< distance of the plane of focus along the view, in m; 0: the distance of the
-                                  ///< target
+    Vec3 position;              ///< m
+    Vec3 target;                ///< m, different from position
+    Vec3 up{0, 0, 1};           ///< of unit length
+    double fov_degrees = 35.0;  ///< vertical field of view, between 1 and 170
+    double aperture = 0.0;      ///< diameter of the lens opening, in m; 0: pinhole, everything is in focus
+    /// Distance from the camera to the plane of focus, in m; 0: the plane through the target.
+    double focus_distance = 0.0;
 };
 
-/// Unit vectors of a camera: right, up in the picture, and forward.
+/// Unit vectors to the right and to the top of the picture, and in the direction of view.
 struct CameraFrame {
     Vec3 right, up, forward;
 };
@@ -29,13 +29,13 @@ struct CameraFrame {
 
 /// Points that an automatic view shows.
 struct ViewSubject {
-    std::vector<Vec3> particles;  ///< outliers are left out of the view
-    std::vector<Vec3> colliders;  ///< points of the colliders' surfaces; all are shown
+    std::vector<Vec3> particles;  ///< outliers can be outside the view
+    std::vector<Vec3> colliders;  ///< points of the colliders' surfaces; all are inside the view
 };
 
-/// Returns a three-quarter view from slightly above. The camera is just far enough away to show the subject in a
-/// picture with the given ratio of width to height. Points that are not finite are ignored. An empty subject gives a
-/// view of the unit ball.
+/// Returns a view of the subject from the front right and slightly above. The camera has the smallest distance at which
+/// the subject fits into a picture with the given ratio of width to height. Points that are not finite are ignored. If
+/// the subject is empty, the view shows the points (-1, -1, -1) and (1, 1, 1).
 [[nodiscard]] Camera automatic_camera(const ViewSubject& subject, const Vec3& up, double aspect);
 
 }  // namespace ricochet

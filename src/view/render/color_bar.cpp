@@ -15,14 +15,14 @@ namespace {
 
 constexpr int kDotsWide = 110;  // least width of a bar, in dots of its letters
 constexpr int kDotsHigh = 8;
-constexpr int kColorBarMargin = 6;              // dots on each side
-constexpr int kLineHeight = kLetterHeight + 3;  // dots
+constexpr int kColorBarMargin = 6;              // margin on each side, in dots
+constexpr int kLineHeight = kLetterHeight + 3;  // height of a line of text, in dots
 
 int dot_of(int picture_width, int picture_height) {
     return std::max(1, std::min(picture_height / 360, picture_width / 480));
 }
 
-/// The texts of a bar, in lines that fit the picture.
+/// Texts of a bar, broken into lines that fit the picture.
 struct BarTexts {
     std::vector<std::string> title;
     std::vector<std::string> note;
@@ -82,7 +82,7 @@ void draw_bar(Image& image, const ColorBar& bar, const BarPosition& bar_position
 }  // namespace
 
 std::string bar_number(double value) {
-    if (value == 0.0) return "0";  // not -0
+    if (value == 0.0) return "0";  // also for -0
     constexpr std::array<std::pair<double, char>, 3> kSuffixes = {{{1e9, 'G'}, {1e6, 'M'}, {1e3, 'k'}}};
     for (const auto& [size, suffix] : kSuffixes) {
         if (std::fabs(value) < size || std::fabs(value) >= 1e12) continue;
@@ -95,7 +95,7 @@ std::vector<std::string> broken_text(const std::string& text, std::size_t letter
     std::vector<std::string> lines;
     std::string rest = text;
     while (rest.size() > letters) {
-        // The space after the last character that fits is also a valid break.
+        // A space directly after the last character that fits is also a valid break.
         const std::size_t space = rest.rfind(' ', letters);
         const bool at_space = space != std::string::npos && space > 0;
         lines.push_back(rest.substr(0, at_space ? space : letters));
@@ -108,9 +108,9 @@ std::vector<std::string> broken_text(const std::string& text, std::size_t letter
 std::vector<BarPosition> bar_places(int picture_width, int picture_height, const std::vector<ColorBar>& bars) {
     const int dot = dot_of(picture_width, picture_height);
     std::vector<BarPosition> bar_positions;
-    int x = 2 * kColorBarMargin;       // dots
-    int bottom = 2 * kColorBarMargin;  // in dots, of the current row above the picture's lower edge
-    int tallest = 0;                   // in dots, of the tallest bar in the row
+    int x = 2 * kColorBarMargin;       // left edge of the next bar, in dots
+    int bottom = 2 * kColorBarMargin;  // distance of the current row from the picture's lower edge, in dots
+    int tallest = 0;                   // height of the tallest bar in the row, in dots
     for (const ColorBar& bar : bars) {
         const BarTexts texts(bar, picture_width, dot);
         if (x > 2 * kColorBarMargin && (x + texts.width() + kColorBarMargin) * dot > picture_width) {

@@ -1,5 +1,6 @@
 /// \file
-/// Colour bars in the lower left corner of a picture. They show the name, unit and range of each coloured quantity.
+/// Colour bars in the lower left corner of a picture. Each bar shows the name, unit and range of a quantity that
+/// colours particles or colliders.
 #pragma once
 
 #include <string>
@@ -16,7 +17,7 @@ struct ColorBar {
     std::string unit;  ///< empty: no unit
     ValueRange range;
     ColorMap map = ColorMap::plasma;
-    std::string note{};  ///< a line below the numbers; empty: no line
+    std::string note{};  ///< text below the numbers; empty: no text
 };
 
 /// Position and size of a bar in a picture, in pixels, with x to the right and y down.
@@ -25,11 +26,11 @@ struct BarPosition {
     int y = 0;
     int width = 0;
     int height = 0;
-    int dot = 1;  ///< pixels per dot of its letters
+    int dot = 1;  ///< size of a dot of the letters, in pixels
 };
 
-/// Returns the positions of the bars of a picture. Each bar is as wide as its texts need. Bars stand side by side, and
-/// wrap to a new row above if the picture is too narrow.
+/// Returns the positions of the bars of a picture. Each bar is at least as wide as its texts. Bars are placed side by
+/// side. If the picture is too narrow, the next bars are placed in a new row above.
 [[nodiscard]] std::vector<BarPosition> bar_places(int picture_width, int picture_height,
                                                   const std::vector<ColorBar>& bars);
 
@@ -39,7 +40,7 @@ struct BarPosition {
 /// Draws the bars. Pictures less than 200 pixels wide or 100 pixels high are too small for bars and stay unchanged.
 void draw_color_bars(Image& image, const std::vector<ColorBar>& bars);
 
-/// Formats a number for a bar, with three significant digits.
+/// Returns a number as text with three significant digits. Large numbers have a suffix k, M or G.
 [[nodiscard]] std::string bar_number(double value);
 
 }  // namespace ricochet

@@ -38,7 +38,7 @@ Vec3 map_color(ColorMap map, double t) {
     const double position = std::clamp(t, 0.0, 1.0) * (kKnots - 1);
     const auto knot = std::min(static_cast<std::size_t>(position), kKnots - 2);
     const double weight = position - static_cast<double>(knot);
-    // Colours between knots are mixed in sRGB, because the maps are perceptually uniform there.
+    // Colours between knots are interpolated in sRGB, because the maps are perceptually uniform in sRGB.
     const Vec3 mix = (1.0 - weight) * srgb(knots[knot]) + weight * srgb(knots[knot + 1]);
     return {linear_from_srgb(mix.x), linear_from_srgb(mix.y), linear_from_srgb(mix.z)};
 }
@@ -59,7 +59,7 @@ ValueRange robust_range(std::vector<double> values) {
         std::nth_element(values.begin(), value, values.end());
         return *value;
     };
-    // The same number of values is cut off at both ends. Nothing is cut off below 100 values.
+    // The same number of values is cut off at both ends. Lists of at most 100 values are not cut.
     const std::size_t strays = (values.size() - 1) / 100;
     const double low = value_at(strays);
     const double high = value_at(values.size() - 1 - strays);

@@ -11,7 +11,7 @@
 
 namespace ricochet {
 
-/// Colour maps by name. All but turbo are perceptually uniform.
+/// Colour maps by name. All maps except turbo are perceptually uniform.
 /// Sources: viridis, plasma, inferno and magma by S. van der Walt and N. Smith (2015, CC0), turbo by A. Mikhailov
 /// (2019). Each map is sampled at nine knots.
 enum class ColorMap { viridis, plasma, turbo, inferno, magma };
@@ -20,10 +20,10 @@ enum class ColorMap { viridis, plasma, turbo, inferno, magma };
 /// Returns all names, in the order of the enumeration.
 [[nodiscard]] std::vector<std::string_view> color_map_names();
 
-/// Returns the linear-light colour of t. A t below 0 or above 1 gets the colour of that end. NaN gets a neutral grey.
+/// Returns the colour of the map at t, in linear light. Values outside 0..1 are clamped. NaN gives a neutral grey.
 [[nodiscard]] Vec3 map_color(ColorMap map, double t);
 
-/// Converts an sRGB channel value in 0..1 to linear light, and back.
+/// Converts a channel value in 0..1 from sRGB to linear light. srgb_from_linear() is the inverse.
 [[nodiscard]] double linear_from_srgb(double value);
 [[nodiscard]] double srgb_from_linear(double value);
 
@@ -33,7 +33,7 @@ struct ValueRange {
     double high = 1.0;
 };
 /// Returns the range from the 1st to the 99th percentile of the finite values, so that outliers do not compress the
-/// colours. Equal values give a slightly wider range. An empty list gives [0, 1].
+/// colours. If these percentiles are equal, the range is widened slightly. An empty list gives [0, 1].
 [[nodiscard]] ValueRange robust_range(std::vector<double> values);
 
 }  // namespace ricochet

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kBlock = 4096;
 
-// Returns the unit normal multiplied by twice the area.
+// Returns the triangle's normal with a length of twice its area.
 Vec3 area_vector(const TriangleMesh& mesh, const Triangle& triangle) {
     const Vec3& a = mesh.vertices[triangle[0]];
     return cross(mesh.vertices[triangle[1]] - a, mesh.vertices[triangle[2]] - a);
@@ -23,7 +23,7 @@ Vec3 unit_or_zero(const Vec3& v) {
     return norm > 0.0 && std::isfinite(norm) ? v / norm : Vec3{};
 }
 
-// The triangles around each vertex v: triangles[offsets[v]] .. triangles[offsets[v + 1]].
+// Triangles around each vertex. The entries from offsets[v] to offsets[v + 1] - 1 of `triangles` belong to vertex v.
 struct VertexTriangles {
     std::vector<std::uint32_t> offsets, triangles;
 };

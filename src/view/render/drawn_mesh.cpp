@@ -19,9 +19,9 @@ void make_drawable(TriangleMesh& mesh) {
     }
 }
 
-// Returns the offset from a point of a triangle to the smooth surface that the corner normals define. Shadow rays
-// start on the smooth surface, because rays from the flat triangle would draw the edge of its own shadow. The offset
-// is zero on concave surfaces.
+// Returns the offset from a point of a triangle to the smooth surface that the corner normals define. Shadow rays start
+// on the smooth surface. If they started on the flat triangle, neighbouring triangles would block them near the
+// shadow's edge and make the facets visible. The offset is zero on concave surfaces.
 // Method: J. Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021, chapter 4.
 Vec3 lift_to_smooth(const DrawnMesh& mesh, unsigned triangle, const std::array<double, 3>& weights,
                     const Vec3& seen_normal) {

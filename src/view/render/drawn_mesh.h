@@ -1,5 +1,5 @@
 /// \file
-/// Private: a mesh for ray tracing, with the data for its shading. Included only by the .cpp files that use Embree.
+/// Private: meshes for ray tracing, with data for shading. Included only by the .cpp files that use Embree.
 #pragma once
 
 #include <array>
@@ -13,7 +13,8 @@
 
 namespace ricochet {
 
-// Debian builds Embree with assertions, and rays that are not finite or exceed 1.8e18 end the process.
+// Largest coordinate in the drawable range, in m. Debian builds Embree with assertions, which end the process for rays
+// that are not finite or exceed 1.8e18.
 inline constexpr double kLargestDrawn = 1e15;
 
 /// Returns true if a point is finite and within the drawable range.
@@ -24,25 +25,27 @@ inline constexpr double kLargestDrawn = 1e15;
     return dot(normal, direction) > 0.0 ? -normal : normal;
 }
 
-/// A mesh with drawable vertices, and the normals at its triangles' corners.
+/// Mesh with drawable vertices, and the smooth normals at the corners of its triangles.
 struct DrawnMesh {
     PreviewMesh source;
     std::vector<std::array<Vec3, 3>> normals;
 };
 
-/// Prepares a mesh for drawing. Triangles with an undrawable corner shrink to a point, so that triangle numbers stay
-/// valid.
+/// Prepares a mesh for drawing. If a corner of a triangle is not drawable, the triangle becomes degenerate instead of
+/// being removed, so that triangle numbers stay valid.
 [[nodiscard]] DrawnMesh drawn_mesh(PreviewMesh source, double crease_degrees);
-/// Creates an Embree geometry of the triangles, with `origin` as the origin. Throws RunError if memory is short.
+/// Creates an Embree geometry of the triangles, with coordinates relative to `origin`. Throws RunError if memory is
+/// short.
 [[nodiscard]] RTCGeometry triangles_of(RTCDevice device, const TriangleMesh& mesh, const Vec3& origin);
 
 /// Shading data of a point on a triangle.
 struct MeshPoint {
-    Vec3 normal;  ///< smoothed unit normal, on the side of `face`
+    Vec3 normal;  ///< smoothed unit normal, on the same side as `face`
     Vec3 lift;    ///< offset to the smooth surface that the corner normals define, in m
     Vec3 color;
 };
-/// Returns the shading data at Embree's coordinates u, v of a triangle. `face` is the unit normal of the visible side.
+/// Returns the shading data of the point with barycentric coordinates u, v (as Embree defines them). `face` is the unit
+/// normal of the triangle's visible side.
 [[nodiscard]] MeshPoint point_of(const DrawnMesh& mesh, unsigned triangle, double u, double v, const Vec3& face);
 
 }  // namespace ricochet

@@ -12,12 +12,14 @@
 namespace ricochet {
 namespace {
 
-constexpr std::array<int, 3> kSteps = {1, 2, 4};  // distance between taps in each pass, in pixels
-constexpr float kLightSigmas = 2.0F;  // number of standard deviations above which a difference of light is an edge
-constexpr float kLightFloor = 2e-3F;  // standard deviation below which noise is invisible
+// Distance between taps (sampled pixels of the filter kernel) in each pass, in pixels.
+constexpr std::array<int, 3> kSteps = {1, 2, 4};
+// Number of standard deviations above which a difference of brightness counts as an edge.
+constexpr float kLightSigmas = 2.0F;
+constexpr float kLightFloor = 2e-3F;  // standard deviation of brightness below which noise is invisible
 constexpr float kNormalSharpness = 48.0F;
 constexpr float kAlbedoSharpness = 260.0F;
-constexpr float kSmallestAlbedo = 0.03F;  // added to the albedo before light is divided by it
+constexpr float kSmallestAlbedo = 0.03F;  // added to the albedo before light is divided by the albedo
 
 float bright(const Float3& c) { return 0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z; }
 
@@ -31,7 +33,7 @@ Float3 multiplied(const Float3& light, const Float3& albedo) {
             light.z * (albedo.z + kSmallestAlbedo)};
 }
 
-// Approximates exp(-x) for x >= 0 to some thousandths, without a call: (1 - x / 16)^16.
+// Approximates exp(-x) for x >= 0 as (1 - x / 16)^16, which avoids a library call.
 float falling(float x) {
     const float left = 1.0F - x * (1.0F / 16.0F);
     float t = 0.5F * (left + std::fabs(left));  // max(left, 0), without a branch
@@ -41,7 +43,7 @@ float falling(float x) {
     return t * t;
 }
 
-// A row of a picture, one array per component, so that the compiler can vectorize the loops over pixels.
+// Row of a picture. Each component has its own array, so that the compiler can vectorize the loops over pixels.
 struct Row {
     std::vector<float> red, green, blue, bright, variance;
     std::vector<float> normal_x, normal_y, normal_z, albedo_x, albedo_y, albedo_z, distance;
@@ -74,7 +76,7 @@ struct Row {
     }
 };
 
-// Sums over the taps of a row of pixels.
+// Sums over the taps of each pixel of a row.
 struct Sums {
     std::vector<float> red, green, blue, variance, weights;
 
@@ -86,9 +88,9 @@ struct Sums {
 
 float squared(float x) { return x * x; }
 
-// Computes the dissimilarity of `count` pairs of pixels, from surface features and brightness. `scale` multiplies
-// differences of brightness. `steep`, in 1/m, multiplies differences of distance; it is the inverse of the difference
-// that the slant explains.
+// Computes the dissimilarity of `count` pairs of pixels from their surface features and brightness. `scale` multiplies
+// differences of brightness. `steep`, in 1/m, multiplies differences of distance. It is the inverse of the difference
+// that is expected on an inclined surface.
 void differences(const Row& here, std::size_t x, const Row& there, std::size_t u, std::size_t count,
                  const float* __restrict scale, const float* __restrict steep, float* __restrict out) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -105,7 +107,7 @@ void differences(const Row& here, std::size_t x, const Row& there, std::size_t u
     }
 }
 
-// One pass of the filter over the light of a picture, from one buffer to another.
+// One pass of the filter over the light of a picture. It reads one buffer and writes another.
 class Pass {
 public:
     Pass(const NoisyPicture& picture, int step)
@@ -118,7 +120,8 @@ public:
           steep_{std::vector<float>(width_), std::vector<float>(width_), std::vector<float>(width_)},
           weights_(width_) {}
 
-    // Processes rows one step apart in sequence, because they share most of the rows of their taps.
+    // Processes rows at a distance of one step in sequence, because they share most of the rows that contain their
+    // taps.
     void rows(int begin, int end, NoisyPicture& target) {
         for (int first = begin; first < std::min(begin + step_, end); ++first) {
             for (int y = first; y < end; y += step_) row(y, target);
@@ -151,7 +154,7 @@ private:
         }
     }
 
-    // Returns a row of the picture from the cache of the last rows, and loads it if necessary.
+    // Returns a row of the picture. Loads the row if it is not in the cache of the last rows.
     const Row& loaded(int y) {
         const auto slot = static_cast<std::size_t>(y / step_) % kRows;
         if (loaded_[slot] != y) {
@@ -183,7 +186,7 @@ private:
         return sum / weights;
     }
 
-    // Adds one tap to all pixels of the row whose tap lies in the picture.
+    // Adds the tap at offset (dx, dy) to the sums of a row. Pixels whose tap is outside the picture are skipped.
     void add_tap(const Row& here, const Row& there, int dx, int dy) {
         constexpr std::array<float, 3> kKernel = {3.0F / 8.0F, 1.0F / 4.0F, 1.0F / 16.0F};
         const auto across = static_cast<std::size_t>(std::abs(dx));
@@ -224,12 +227,12 @@ private:
     const NoisyPicture& picture_;
     int step_;
     std::size_t width_;
-    static constexpr std::size_t kRows = 5;  // rows of the taps of a pixel
+    static constexpr std::size_t kRows = 5;  // number of rows that contain the taps of a pixel
     std::vector<Row> rows_;
     std::array<int, kRows> loaded_{-1, -1, -1, -1, -1};
     Sums sums_;
     std::vector<float> scale_;
-    std::array<std::vector<float>, 3> steep_;  // by the distance of the tap, in steps
+    std::array<std::vector<float>, 3> steep_;  // index: distance of the tap, in steps
     std::vector<float> weights_;               // weights of one tap
 };
 

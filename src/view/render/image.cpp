@@ -59,8 +59,8 @@ std::string png_bytes(const Image& image) {
 
 namespace {
 
-/// Returns the reason for which the decoder failed. The reason can quote bytes of the file. For some files the decoder
-/// gives none.
+/// Returns the reason of the decoder's last failure as printable text, because the reason can quote bytes of the file.
+/// Returns a default reason if the decoder gives none.
 std::string failure_reason() {
     const char* const reason = stbi_failure_reason();
     return reason == nullptr ? "a chunk does not fit in the file" : printable(reason, 60);

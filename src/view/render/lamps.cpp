@@ -11,12 +11,12 @@
 namespace ricochet {
 namespace {
 
-// Sums over one cell of the grid.
+// Sums over the light sources in one cell of the grid.
 struct Cell {
     Vec3 intensity;
-    Vec3 moment;          // sum of the positions, weighted by brightness
+    Vec3 moment;          // sum of the positions times the brightness
     double weight = 0.0;  // sum of the brightness
-    double spread = 0.0;  // sum of the squared positions, weighted by brightness
+    double spread = 0.0;  // sum of the squared positions plus squared radii, times the brightness
 };
 
 using CellIndex = std::array<long, 3>;
@@ -50,7 +50,8 @@ std::vector<Shining> shining_discs(const Sprites& sprites) {
     return all;
 }
 
-// Splits a line into pieces not longer than a cell, each with its share of the light.
+// Splits a line into equal pieces, each at most as long as a cell, and divides the line's light equally among the
+// pieces.
 void cut_up(const GlowingLine& line, double size, std::vector<Shining>& all) {
     const double pieces = std::max(1.0, std::ceil(length(line.to - line.from) / size));
     for (double k = 0.5; k < pieces; k += 1.0) {

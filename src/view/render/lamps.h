@@ -1,5 +1,5 @@
 /// \file
-/// Glowing particles as lights for their surroundings.
+/// Lamps that replace glowing particles when the light on their surroundings is computed.
 #pragma once
 
 #include <cstddef>
@@ -12,17 +12,20 @@
 
 namespace ricochet {
 
-/// A small light that shines equally in all directions.
+/// Small light source with equal intensity in all directions.
 struct Lamp {
-    Vec3 position;        ///< m
-    Vec3 intensity;       ///< light times m^2: a surface that faces the lamp at a distance d receives intensity / d^2
-    double radius = 0.0;  ///< radius of the objects that it represents, in m; it gets no brighter below this distance
+    Vec3 position;  ///< m
+    /// Intensity, in units of light times m^2; a surface that faces the lamp at a distance d receives intensity / d^2.
+    Vec3 intensity;
+    /// Radius of the objects that the lamp represents, in m; at smaller distances, the received light does not
+    /// increase.
+    double radius = 0.0;
 };
 
-/// Merges the light of glowing discs and lines into a few lamps, one for each occupied cell of a grid.
-/// The lamps and their sources have the same total intensity. Each disc counts as a sphere of its radius that is as
-/// bright as its colour. Each line contributes to a cell with the piece that lies in it. The grid is made coarser
-/// until at most `most` (> 0) lamps remain. The lamps do not depend on the number of threads.
+/// Merges the light of glowing discs and lines into a few lamps, one for each occupied cell of a grid. The total
+/// intensity of the lamps equals the total intensity of their sources. Each disc counts as a sphere with the disc's
+/// radius and colour. Each line is split into pieces, and each piece contributes to the cell of its middle. The grid is
+/// made coarser until at most `most` (> 0) lamps remain. The lamps do not depend on the number of threads.
 [[nodiscard]] std::vector<Lamp> lamps_of(const Sprites& sprites, std::span<const GlowingLine> lines, std::size_t most);
 [[nodiscard]] inline std::vector<Lamp> lamps_of(const Sprites& sprites, std::size_t most) {
     return lamps_of(sprites, {}, most);

@@ -21,7 +21,7 @@ SkyColors scaled(const SkyColors& colors, const Vec3& tint) {
 constexpr SkyColors kDaySky{{0.20, 0.36, 0.68}, {0.62, 0.70, 0.80}, {0.36, 0.34, 0.32}, 0.6, 2.5};
 constexpr SkyColors kDayBackdrop{{0.60, 1.10, 2.10}, {2.30, 2.55, 2.80}, {1.70, 1.70, 1.68}, 0.7, 1.6};
 
-// Returns the horizontal direction away from the camera.
+// Returns the horizontal component of the direction of view, as a unit vector.
 Vec3 ahead_of(const Camera& camera, const CameraFrame& frame) {
     const Vec3 ahead = frame.forward - dot(frame.forward, camera.up) * camera.up;
     return length(ahead) > 1e-6 ? normalized(ahead) : frame.up;
@@ -68,7 +68,7 @@ std::vector<std::string_view> lighting_names() { return {kNames.begin(), kNames.
 
 Vec3 SkyColors::at(double height) const {
     if (height < 0.0) return mix(horizon, below, std::min(1.0, -fall * height));
-    // Single precision takes a third of the time.
+    // Single precision takes a third of the time of double precision.
     return mix(horizon, zenith, std::pow(static_cast<float>(std::min(1.0, height)), static_cast<float>(rise)));
 }
 

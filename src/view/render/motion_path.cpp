@@ -6,7 +6,7 @@
 namespace ricochet {
 namespace {
 
-// Returns a point of the Hermite cubic between two nodes. Returns the position of `b` if their times are equal.
+// Returns a point of the Hermite cubic between two nodes. Returns the position of `b` if the nodes have equal times.
 Vec3 between(const PathNode& a, const PathNode& b, double time) {
     const double span = b.time - a.time;
     if (!(span > 0.0)) return b.position;
@@ -16,8 +16,9 @@ Vec3 between(const PathNode& a, const PathNode& b, double time) {
            s * t * span * (t * a.velocity_after - s * b.velocity_before);
 }
 
-// Returns an upper bound of the deviation of the path from its chord. It is an eighth of the largest second derivative
-// times the square of the duration. The second derivative of a cubic is largest at one of its ends.
+// Returns an upper bound of the deviation of the path from its chord. The bound is an eighth of the largest second
+// derivative times the square of the duration. The second derivative of a cubic is linear, so its magnitude is largest
+// at one of the ends.
 double bend(const PathNode& a, const PathNode& b) {
     const Vec3 derivative = 6.0 * (b.position - a.position);
     const double span = b.time - a.time;
@@ -54,7 +55,8 @@ std::vector<PathPoint> path_points(std::span<const PathNode> nodes, double from,
             const double time = begin + i / pieces * (end - begin);
             points.push_back({time, position_on_path(nodes, time)});
         }
-        // The exact node is used instead of the position at the rounded time, because it is the corner of an impact.
+        // The position of a node is copied, because the interpolated position is rounded and the path has a corner at
+        // an impact.
         const bool at_node = k < nodes.size() && end == nodes[k].time;
         points.push_back({end, at_node ? nodes[k].position : position_on_path(nodes, end)});
     }

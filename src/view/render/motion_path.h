@@ -1,5 +1,6 @@
 /// \file
-/// Path of a particle between two frames of a run, from the recorded states and the impacts in between.
+/// Path of a particle between two frames of a run, interpolated from the states in both frames and the impacts between
+/// them.
 #pragma once
 
 #include <span>
@@ -9,7 +10,8 @@
 
 namespace ricochet {
 
-/// A time of known position and velocity. The two velocities differ only at an impact.
+/// Position and velocity of the particle at one time. The velocities before and after this time differ only at an
+/// impact.
 struct PathNode {
     double time = 0.0;  ///< s
     Vec3 position;      ///< m
@@ -17,20 +19,20 @@ struct PathNode {
     Vec3 velocity_after;
 };
 
-/// Returns the position of the particle at a time, in s.
-/// Between two nodes, the path is the cubic through their positions and velocities. It is the true path under a
-/// constant acceleration. The path is straight before the first node and after the last. `nodes` must hold at least
-/// one node and be in order of time.
+/// Returns the position of the particle at a time, in s. Between two nodes, the path is the cubic Hermite polynomial of
+/// their positions and velocities, which is exact for constant acceleration. Before the first node and after the last
+/// node, the path is straight. `nodes` must contain at least one node and be in order of time.
 [[nodiscard]] Vec3 position_on_path(std::span<const PathNode> nodes, double time);
 
-/// A point of a path with its time.
+/// Point of a path, and its time.
 struct PathPoint {
     double time = 0.0;  ///< s
     Vec3 position;      ///< m
 };
 
-/// Returns the path from `from` to the later time `to` as points. The points contain both ends and every node in
-/// between. More points keep the path within `sagitta` (m) of the lines between the points, but at most 64 per piece.
+/// Returns the path from `from` to the later time `to` as points. The points contain both ends and every node between
+/// them. More points between two nodes limit the distance of the path from the lines between the points to `sagitta`,
+/// in m. The limit can be exceeded if it needs more than 64 lines between two nodes.
 [[nodiscard]] std::vector<PathPoint> path_points(std::span<const PathNode> nodes, double from, double to,
                                                  double sagitta);
 

@@ -64,12 +64,12 @@ void Painter::aim(Look& look, const PixelPosition& pixel_position, int sample) c
     look.ray.time = look.samples->time(sample);
 }
 
-// Returns the number of extra rays per pixel. Pixels get more rays if their samples see different things or can have
-// missed an outline. Their neighbours get some rays too, because their samples can have missed small objects.
+// Returns the number of extra rays per pixel. A pixel gets extra rays if its samples differ or can have missed an
+// outline. The other pixels of the tile get some rays too, because their samples can have missed small objects.
 std::array<int, kPacketRays> Painter::rays_wanted(std::span<const PixelPosition> pixel_positions,
                                                   std::span<const PixelSum> sums, const KnownSpheres& known) const {
     constexpr int kBeside = 4;
-    constexpr double kHalfDiagonal = 1.42;  // in units of half a pixel
+    constexpr double kHalfDiagonal = 1.42;  // half the diagonal of a pixel, in units of half its edge
     std::array<bool, kPacketRays> outlines{};
     if (known.listed && !known.listed->empty()) {
         std::array<PreviewRay, kPacketRays> middles;
@@ -89,7 +89,7 @@ std::array<int, kPacketRays> Painter::rays_wanted(std::span<const PixelPosition>
     return wanted;
 }
 
-// Adds more rays from the camera and to the sun.
+// Traces the extra camera rays of the pixels, with shadow rays to the sun, and adds the results to `sums`.
 void Painter::add_glances(std::span<const PixelPosition> pixel_positions, std::span<Look> looks,
                           std::span<PixelSum> sums, const KnownSpheres& known) const {
     std::array<Look, kPacketRays> room;
@@ -192,8 +192,8 @@ void Painter::trace_besides(std::span<PreviewRay> rays, std::span<std::optional<
     }
 }
 
-// Returns the hit on a sphere. The normal points from the centre to the hit point. It faces the ray if the sphere is
-// too small to resolve.
+// Returns the hit on a sphere. The normal points from the centre to the hit point. If the distance to the centre rounds
+// to 0, the normal is opposite to the ray.
 PreviewHit Painter::sphere_hit(const SphereFind& find, const PreviewRay& ray) const {
     const Vec3 outward = ray.origin - preview_.spheres().centers[find.sphere] + find.distance * ray.direction;
     const double size = length(outward);

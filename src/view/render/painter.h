@@ -1,6 +1,6 @@
 /// \file
-/// The light that reaches the camera: sun with soft shadows, sky light, one bounce of light between surfaces, and
-/// glass.
+/// Computation of the light that reaches the camera: sun with soft shadows, sky light, one bounce of light between
+/// surfaces, and glass.
 #pragma once
 
 #include <array>
@@ -28,35 +28,36 @@ struct PixelPosition {
     int y = 0;
 };
 
-/// Data about the spheres that replaces rays when it is faster.
+/// Data about the spheres that replaces rays if it is faster than rays.
 struct KnownSpheres {
-    /// Spheres that camera rays through a tile can hit, nearest first; nothing: rays find them.
+    /// Spheres that camera rays through a tile can hit, nearest first. If std::nullopt, rays find the spheres.
     std::optional<std::span<const NearSphere>> listed;
-    /// Shadows of the spheres; null: rays find them.
+    /// Shadows of the spheres. If null, rays find the shadows.
     const SunShadows* shadows = nullptr;
 };
 
-/// Computes the light of pixels. Safe to use from any thread. Pixels are processed in tiles, whose coherent rays are
-/// traced in packets of up to kPacketRays.
+/// Computes the light of pixels. Safe to use from any thread. Pixels are processed in tiles. The rays of a tile are
+/// coherent and traced in packets of up to kPacketRays.
 class Painter {
 public:
     Painter(const Preview& preview, const Camera& camera, const PictureOptions& options, std::vector<Lamp> lamps = {});
 
-    /// Computes the pixels of one tile. `out` has as many entries as `places`. `known` describes the spheres visible
-    /// there.
+    /// Computes the pixels of one tile. `out` has as many entries as `pixel_positions`. `known` describes the spheres
+    /// that are visible in the tile.
     void pixels(std::span<const PixelPosition> pixel_positions, std::span<PixelLight> out,
                 const KnownSpheres& known = {}) const;
-    /// Computes the pixels of a draft (see PictureOptions::quick). Sets only light and alpha. `finds` holds the visible
-    /// sphere of each place. `shadows` holds the spheres' shadows towards sun_middle(). Without them, rays find both.
+    /// Computes the pixels of a draft (see PictureOptions::quick). Sets only light and alpha. `finds` has the visible
+    /// sphere of each pixel. `shadows` has the shadows of the spheres for light from sun_middle(). If `finds` is empty,
+    /// rays find the spheres. If `shadows` is null, rays find the shadows.
     void quick_pixels(std::span<const PixelPosition> pixel_positions, std::span<PixelLight> out,
                       std::span<const SphereFind> finds = {}, const SunShadows* shadows = nullptr) const;
-    /// Returns the direction to the middle of the sun, or nothing without a sun.
+    /// Returns the direction to the middle of the sun, or std::nullopt if there is no sun.
     [[nodiscard]] std::optional<Vec3> sun_middle() const;
     /// Returns the tangent of the angle between the middle of the sun and its rim.
     [[nodiscard]] double sun_slope() const { return light_.sun_size; }
 
 private:
-    // Light along one camera ray.
+    // Light along one camera ray, and the share that glass covers.
     struct Seen {
         Vec3 light;
         double cover = 1.0;
@@ -68,14 +69,15 @@ private:
         const PixelSamples* samples = nullptr;
         int sample = 0;
         const PreviewHit* hit = nullptr;
-        std::uint32_t surface = 0;  // as in Glance
-        Vec3 color;                 // colour of the hit surface
-        double left = 1.0;          // share of its light; the rest is the background at the horizon
-        Vec3 sun, sky;              // light that falls on the hit surface
+        std::uint32_t surface = 0;  // see Glance::surface
+        Vec3 color;                 // colour of the surface at the hit
+        // Share of the surface's light in the result; the rest is the background at the horizon.
+        double left = 1.0;
+        Vec3 sun, sky;  // light that the surface receives
 
         [[nodiscard]] SamplePair get(SamplePurpose purpose) const { return samples->get(sample, purpose); }
     };
-    // A query for the sun's light on a surface.
+    // Query for the sun's light at a point of a surface.
     struct SunAsk {
         const PreviewHit* hit = nullptr;
         Vec3 to_sun{};
@@ -122,8 +124,8 @@ private:
     Vec3 sun_middle_;  // direction to the middle of the sun
     Vec3 horizon_;     // background at the horizon
     double tangent_;
-    double half_pixel_;  // as a slope
-    double focus_;       // from the camera's plane to the plane of focus, in m
+    double half_pixel_;  // half the size of a pixel at a distance of 1
+    double focus_;       // distance from the camera to the plane of focus, in m
     double extent_;      // half the visible height at the target, in m
     double tile_;        // edge length of the chequer on planes, in m
 };

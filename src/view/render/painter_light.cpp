@@ -12,10 +12,10 @@
 namespace ricochet {
 namespace {
 
-constexpr double kMirror = 0.3;  // smoother surfaces reflect their surroundings
+constexpr double kMirror = 0.3;  // roughness below which surfaces reflect their surroundings
 
-// Returns a point on the lamp's disc, which faces the surface. The point lies in front of the surface. u and v are in
-// 0..1.
+// Returns a point of the lamp's disc, which is perpendicular to the line from the hit to the lamp. The point is in
+// front of the surface. u and v are in 0..1.
 Vec3 point_of(const Lamp& lamp, const PreviewHit& hit, double u, double v) {
     const Vec3 to_light = lamp.position - hit.point;
     const auto [a, b] = tangent_frame(normalized(to_light));
@@ -26,8 +26,8 @@ Vec3 point_of(const Lamp& lamp, const PreviewHit& hit, double u, double v) {
 
 }  // namespace
 
-// Returns the light from behind, tinted and covered by the glass surfaces in front of it. Glass covers more at a
-// grazing angle, which draws its outline.
+// Returns the light `behind`, partly covered by the glass surfaces on the ray. Glass covers more at a grazing angle,
+// which makes its outline visible.
 Painter::Seen Painter::through_glass(PreviewRay ray, double distance, const Vec3& behind) const {
     constexpr int kMostSurfaces = 8;
     if (!has_glass_) return {behind, 0.0};
@@ -60,15 +60,15 @@ Vec3 Painter::solid_light(const Look& look) const {
     return faded(light, look.left);
 }
 
-// Computes the light without any rays except the one to the sun.
+// Returns the light of a surface for a draft. `sun` is the sun's light on the surface. No rays are traced.
 Vec3 Painter::quick_light(const PreviewHit& hit, const Vec3& sun) const {
-    constexpr double kOpenSky = 0.7;  // share of the sky that is visible from a surface among others
+    constexpr double kOpenSky = 0.7;  // assumed share of the sky that other surfaces do not occlude
     const Vec3 color = surface_color(hit);
     const Vec3 light = hit.emission + times(color, sun + kOpenSky * light_.sky(hit.normal));
     return hit.kind == PreviewHit::Kind::plane ? faded(light, nearness(hit)) : light;
 }
 
-// Computes the sun's light on surfaces, with occlusion. Queries without a hit stay unchanged.
+// Computes the sun's light on surfaces, with shadows. Queries without a hit are skipped.
 void Painter::ask_sun(std::span<SunAsk> asks, const SunShadows* shadows) const {
     if (!light_.has_sun()) return;
     std::array<PreviewRay, kPacketRays> rays;
@@ -98,7 +98,7 @@ Vec3 Painter::sun_light(const PreviewHit& hit, const Vec3& to_sun) const {
     return ask.light;
 }
 
-// Returns true if any part of the sun is above the surface.
+// Returns true if any part of the sun is on the visible side of the surface.
 bool Painter::faces_sun(const PreviewHit& hit) const {
     return light_.has_sun() && dot(hit.normal, sun_middle_) > -light_.sun_size;
 }
@@ -116,7 +116,8 @@ void Painter::add_sun_light(std::span<Look> looks, const SunShadows* shadows) co
     for (std::size_t k = 0; k < looks.size(); ++k) looks[k].sun = asks[k].light;
 }
 
-// Adds light from one direction of the sky, or from the sunlit surface that covers the sky in that direction.
+// Adds the sky's light from one sampled direction. If a surface occludes the sky in this direction, the light of this
+// surface is added instead.
 void Painter::add_sky_light(std::span<Look> looks, const SunShadows* shadows) const {
     std::array<std::optional<PreviewHit>, kPacketRays> others;
     std::array<PreviewRay, kPacketRays> rays;
@@ -130,7 +131,7 @@ void Painter::add_sky_light(std::span<Look> looks, const SunShadows* shadows) co
                        look.hit->time};
         whose[count++] = &look;
     }
-    // Glowing objects are excluded, because lamps already represent their light.
+    // Glowing lines are excluded, because lamps already represent their light.
     preview_.trace(std::span(rays.data(), count), std::span(others.data(), count), SphereRays::met, GlowRays::left_out);
     for (std::size_t k = 0; k < count; ++k) {
         asks[k] = {};
@@ -142,15 +143,15 @@ void Painter::add_sky_light(std::span<Look> looks, const SunShadows* shadows) co
         }
     }
     ask_sun(std::span(asks.data(), count), shadows);
-    constexpr Vec3 kFarSky{0.22, 0.25, 0.30};  // represents all further bounces
+    constexpr Vec3 kFarSky{0.22, 0.25, 0.30};  // light on the other surface that replaces all further bounces
     for (std::size_t k = 0; k < count; ++k) {
         if (!others[k]) continue;
         whose[k]->sky = others[k]->emission + times(others[k]->color, asks[k].light + light_.sky_brightness * kFarSky);
     }
 }
 
-// Returns the light of one lamp. The lamp is chosen by importance sampling on the unoccluded light, and the result
-// estimates the sum of all lamps.
+// Returns an estimate of the light of all lamps from one sampled lamp. The probability of a lamp is proportional to its
+// unoccluded light.
 Vec3 Painter::lamp_light(const PreviewHit& hit, const SamplePair& at) const {
     const auto given = [&](const Lamp& lamp) {
         const Vec3 to_light = lamp.position - hit.point;
@@ -161,8 +162,8 @@ Vec3 Painter::lamp_light(const PreviewHit& hit, const SamplePair& at) const {
     for (const Lamp& lamp : lamps_) total += given(lamp) * luminance(lamp.intensity);
     if (!(total > 0.0)) return {};
     double left = at.u * total;
-    double within = 0.0;  // position within the lamp's share, 0..1: the remainder of the random number that chose the
-                          // lamp
+    // Second random number, 0..1: position of the first random number within the chosen lamp's share.
+    double within = 0.0;
     const Lamp* chosen = nullptr;
     for (const Lamp& lamp : lamps_) {
         const double part = given(lamp) * luminance(lamp.intensity);
@@ -178,7 +179,8 @@ Vec3 Painter::lamp_light(const PreviewHit& hit, const SamplePair& at) const {
     return chosen->intensity * (total / luminance(chosen->intensity));
 }
 
-// Returns a highlight of the sky and the sun. On smooth surfaces it is a reflection of the surroundings.
+// Returns the mirrored light of the sky and the sun. Surfaces with a roughness below kMirror reflect other surfaces
+// too.
 Vec3 Painter::gloss(const PreviewHit& hit, const PreviewRay& ray, bool in_sun) const {
     const double facing = -dot(hit.normal, ray.direction);
     const Vec3 mirrored = ray.direction + 2.0 * facing * hit.normal;
@@ -187,7 +189,8 @@ Vec3 Painter::gloss(const PreviewHit& hit, const PreviewRay& ray, bool in_sun) c
     const double grazing2 = grazing * grazing;
     const double fresnel =
         0.04 + 0.5 * grazing2 * grazing2 * grazing * std::min(1.0, smooth / (1.0 - kSphereRoughness));
-    // The lobe of a rough surface uses Beckmann's width as the power of a cosine (B. Walter et al., EGSR 2007).
+    // The highlight is a power of a cosine. The power is derived from the width of a Beckmann distribution (B. Walter
+    // et al., EGSR 2007).
     const double width = std::max(0.02, hit.roughness * hit.roughness);
     const double power = std::max(1.0, 2.0 / (width * width) - 2.0);
     Vec3 around = 0.5 * light_.sky(mirrored);
@@ -200,7 +203,7 @@ Vec3 Painter::gloss(const PreviewHit& hit, const PreviewRay& ray, bool in_sun) c
         around = behind_everything(mirrored);
     }
     if (in_sun) {
-        constexpr double kDark = 30.0;  // peak^power below exp(-kDark) is invisible
+        constexpr double kDark = 30.0;  // highlights below exp(-kDark) are invisible
         const double peak = std::max(0.0, dot(mirrored, light_.to_sun));
         const double shine = power * (1.0 - peak) < kDark ? std::pow(peak, power) : 0.0;
         around += 4.0 * shine * std::clamp(std::sqrt(power / 60.0), 0.1, 8.0) * light_.sun;
@@ -208,14 +211,15 @@ Vec3 Painter::gloss(const PreviewHit& hit, const PreviewRay& ray, bool in_sun) c
     return fresnel * around;
 }
 
-// Returns the origin of secondary rays. It is offset from the surface by the resolution of single precision.
+// Returns the origin of secondary rays. The origin is offset from the surface by the rounding error of single
+// precision.
 Vec3 Painter::off_surface(const PreviewHit& hit) const {
     constexpr double kSinglePrecision = 2e-6;
     const double scale = std::max(max_abs(hit.point - preview_.origin()), hit.distance);
     return hit.point + kSinglePrecision * scale * hit.face;
 }
 
-// Returns the colour of a surface. Planes have a faint chequer as a visual scale, unless they are plain.
+// Returns the colour of a surface. Planes have a faint chequer that shows the scale, unless they are plain.
 Vec3 Painter::surface_color(const PreviewHit& hit) const {
     if (hit.kind != PreviewHit::Kind::plane || hit.is_plain) return hit.color;
     const auto [u, v] = tangent_frame(hit.normal);
@@ -224,7 +228,8 @@ Vec3 Painter::surface_color(const PreviewHit& hit) const {
     return odd ? hit.color : hit.color * (1.0 - 0.10 * std::exp(-hit.distance / (12.0 * extent_)));
 }
 
-// Blends light with the background at the horizon. Planes are infinite, so they fade out at a distance.
+// Blends light with the background at the horizon. `left` is the share of the light. Planes are infinite and fade out
+// with distance.
 Vec3 Painter::faded(const Vec3& light, double left) const { return left * light + (1.0 - left) * horizon_; }
 
 // Returns the share of a plane's own colour that remains at its distance.

@@ -23,7 +23,7 @@
 namespace ricochet {
 namespace {
 
-// Pixels of a tile, which are processed together.
+// Size of a tile of pixels that are processed together, in pixels.
 constexpr int kTileWidth = 4;
 constexpr int kTileHeight = 2;
 static_assert(kTileWidth * kTileHeight == kPacketRays);
@@ -34,7 +34,7 @@ std::size_t pixel_count(const PictureOptions& options) {
     return static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
 }
 
-// A sampled picture, with the alpha of its pixels if it has an alpha channel.
+// Picture before filtering, and the alpha of its pixels if it has an alpha channel.
 struct Sampled {
     NoisyPicture picture;
     std::vector<float> alpha;
@@ -58,8 +58,9 @@ std::vector<Lamp> lamps_in(std::span<const Sprites> layers, const Preview& previ
     return lamps_of(glowing == layers.end() ? Sprites{} : *glowing, preview.glowing_lines(), kMostLamps);
 }
 
-// All layers, merged. Covering layers and additive light are separate, because no coverage bounds additive light. Both
-// are empty if nothing is drawn.
+// All layers of sprites, merged. Covering layers and additive light are stored separately. The function lay_over()
+// divides the light of covering layers by their coverage, but additive light has no coverage. Both are empty if there
+// is nothing to draw.
 struct LaidOver {
     SpriteLayer cover;
     std::vector<Vec3> glow;
@@ -88,7 +89,7 @@ LaidOver laid_over_each_other(std::span<const Sprites> layers, const Preview& pr
     return all;
 }
 
-// Calls paint(places, lights) for the tiles of rows [begin, end) of a picture, and stores the results.
+// Calls paint(pixel_positions, lights) for each tile in the rows [begin, end) of a picture, and stores the results.
 template <class Paint>
 void paint_tiles(int begin, int end, Sampled& out, const Paint& paint) {
     std::array<PixelPosition, kPacketRays> pixel_positions;
@@ -107,7 +108,7 @@ void paint_tiles(int begin, int end, Sampled& out, const Paint& paint) {
     }
 }
 
-// Spheres of a draft and their shadows, found without rays when that is faster.
+// Visible spheres of a draft and their shadows, computed without rays if this is faster.
 class DraftSpheres {
 public:
     DraftSpheres(const Preview& preview, const Camera& camera, const PictureOptions& options, const Painter& painter)
@@ -145,8 +146,8 @@ private:
     std::optional<SunShadows> shadows_;
 };
 
-// Spheres at rest, found without rays when that is faster. Spheres that camera rays can hit are listed tile by tile,
-// if the lens is a pinhole. Their shadows are stored too.
+// Visible spheres and their shadows, computed without rays if the spheres do not move and if this is faster. The
+// spheres that camera rays can hit are listed for each tile if the camera is a pinhole camera.
 class TiledSpheres {
 public:
     TiledSpheres(const Preview& preview, const Camera& camera, const PictureOptions& options, const Painter& painter) {
@@ -155,7 +156,7 @@ public:
             view_.emplace(preview.spheres(), camera, options.width, options.height, WithinPixel::anywhere);
             if (!view_->pays()) view_.reset();
         }
-        // The grid takes up to 400 bytes for each sphere. Rays to a wide sun cross too many of its cells.
+        // The grid of shadows takes up to 400 bytes per sphere. If the sun is wide, rays to it cross too many cells.
         constexpr std::size_t kMostSpheres = 500000;
         constexpr double kWidestSun = 0.1;
         if (preview.spheres().centers.size() > kMostSpheres || painter.sun_slope() > kWidestSun) return;
@@ -167,7 +168,7 @@ public:
 
     // Paints the rows [begin, end) of one row of tiles.
     void paint(const Painter& painter, int begin, int end, Sampled& out) const {
-        constexpr std::size_t kMost = 256;  // spheres of a tile; above this, rays are faster
+        constexpr std::size_t kMost = 256;  // number of spheres in a tile above which rays are faster
         SphereTiles tiles;
         if (view_) tiles = view_->tiles(begin, end, kTileWidth);
         paint_tiles(begin, end, out, [&](std::span<const PixelPosition> pixel_positions, std::span<PixelLight> lights) {
@@ -215,8 +216,8 @@ Sampled sampled(const Preview& preview, const Camera& camera, const PictureOptio
     return out;
 }
 
-// Composites the layers over a pixel. Tone mapping treats a layer's colour as fully opaque and applies coverage
-// afterwards. Tone mapping after coverage would make thin layers too bright.
+// Composites the layers over a pixel. The colour of a layer is tone-mapped as if the layer were opaque, and is
+// multiplied by the coverage afterwards. In the opposite order, thin layers would be too bright.
 void lay_over(const LaidOver& layers, std::size_t i, double exposure, Vec3& light, double& alpha) {
     if (!layers.cover.light.empty()) {
         const double open = layers.cover.transmittance[i];
@@ -233,8 +234,7 @@ void lay_over(const LaidOver& layers, std::size_t i, double exposure, Vec3& ligh
     }
 }
 
-// Stores the bytes of a pixel. PNG needs colours that are not premultiplied by alpha, so the light is divided by
-// alpha.
+// Stores the bytes of a pixel. The light is divided by alpha, because colours of PNG files are not premultiplied.
 void store_pixel(Image& image, std::size_t index, Vec3 light, double alpha) {
     if (!image.alpha.empty()) {
         if (alpha > 0.0) light = light / alpha;
@@ -273,7 +273,8 @@ Image render_picture(const Preview& preview, const Camera& camera, const Picture
 }
 
 double picture_bytes(int width, int height, bool has_sprites) {
-    // The bytes cover the picture, the copy that is packed, and the packed data, which grows by doubling.
+    // Bytes per pixel of the picture, of the copy that is packed, and of the packed data, whose buffer grows by
+    // doubling.
     constexpr double kPixel = 5.0 * 4.0;
     constexpr double kFiltered = 2.0 * (sizeof(Float3) + sizeof(float)) + sizeof(PixelFeatures) + sizeof(float);
     constexpr double kSprites = sizeof(Vec3) + sizeof(double);

@@ -1,6 +1,6 @@
 /// \file
-/// Renders a picture of colliders and particles: sun with soft shadows, sky light, one bounce of light between
-/// surfaces. The same scene and options give the same bytes for any thread count.
+/// Rendering of a picture of colliders and particles, with soft shadows of the sun, sky light, and one bounce of light
+/// between surfaces. The same scene and options give the same bytes for any thread count.
 #pragma once
 
 #include <functional>
@@ -21,20 +21,21 @@ struct PictureOptions {
     int width = 1280;  ///< pixels, 1..16384
     int height = 720;  ///< pixels, 1..16384
     int samples = 16;  ///< rays per pixel, 1..4096
-    /// Renders a draft: one ray through the middle of each pixel, hard shadows, sky light by the surface's slope
-    /// alone. A draft has no light between surfaces and no blur. It ignores `samples` and `filter`.
+    /// Renders a draft with one ray through the middle of each pixel and hard shadows. The sky's light depends only on
+    /// the direction of the surface normal. A draft has no light between surfaces and no motion or focus blur. It
+    /// ignores `samples` and `filter`.
     bool quick = false;
     double exposure = 1.0;
     Lighting lighting = Lighting::day;
-    std::optional<Vec3> background;  ///< linear light of the background, instead of the lighting's own
-    bool transparent = false;        ///< no background: the picture has an alpha channel
-    bool filter = true;              ///< remove the noise, see filter_noise()
-    /// Called repeatedly, from any thread, with the finished share, 0..1. Can be empty.
+    std::optional<Vec3> background;  ///< background colour in linear light, instead of the background of the lighting
+    bool transparent = false;        ///< the picture has an alpha channel instead of a background
+    bool filter = true;              ///< noise is removed, see filter_noise()
+    /// Callback that receives the finished share, 0..1, repeatedly and from any thread. Can be empty.
     std::function<void(double)> progress;
 };
 
-/// Renders the picture. Sprites are composited over everything else and tone-mapped separately, each layer over the
-/// previous layers. The first glowing layer lights its surroundings, as glowing lines of the preview do.
+/// Renders the picture. The layers of sprites are composited in order over everything else, and tone-mapped separately.
+/// The first glowing layer lights its surroundings, like the glowing lines of the preview.
 [[nodiscard]] Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options,
                                    std::span<const Sprites> layers);
 [[nodiscard]] inline Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options,
@@ -42,7 +43,7 @@ struct PictureOptions {
     return render_picture(preview, camera, options, std::span(&sprites, 1));
 }
 
-/// Returns the peak memory of render_picture() and PNG packing together, in bytes, without the scene.
+/// Returns the peak memory of rendering and packing as PNG, in bytes. The memory of the scene is not included.
 [[nodiscard]] double picture_bytes(int width, int height, bool has_sprites);
 
 }  // namespace ricochet

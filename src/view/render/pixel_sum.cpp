@@ -10,11 +10,11 @@
 namespace ricochet {
 namespace {
 
-// Differences between a pixel's samples are measured on the square root of the shown value, like perception and the
-// picture's bytes.
-constexpr double kEven = 0.06;            // below this, a pixel needs no more rays
-constexpr double kRaysByContrast = 20.0;  // for a difference of 1
-constexpr int kRaysUnseen = 4;            // if samples can have missed an outline
+// Differences between a pixel's samples are measured on the square root of the shown light. This approximates
+// perception and the sRGB values of the picture.
+constexpr double kEven = 0.06;            // difference below which a pixel needs no extra rays
+constexpr double kRaysByContrast = 20.0;  // number of extra rays for a difference of 1
+constexpr int kRaysUnseen = 4;            // least number of extra rays if the samples can have missed an outline
 
 Vec3 rooted(const Vec3& shown) { return {std::sqrt(shown.x), std::sqrt(shown.y), std::sqrt(shown.z)}; }
 
@@ -54,15 +54,15 @@ void PixelSum::add_features(const Glance& glance) {
     seen_ += glance.covers ? 1.0 : 0.0;
 }
 
-// Returns the ratio of the pixel's light to its unoccluded light.
+// Returns, for each channel, the samples' light without Glance::own, divided by their light without occlusion.
 Vec3 PixelSum::lit() const { return {part(light_.x, plain_.x), part(light_.y, plain_.y), part(light_.z, plain_.z)}; }
 
-// Returns the light of a sample under the assumption that its surface is lit like the pixel's mean.
+// Returns the expected light of a sample, in which the ratio `lit` of the pixel replaces the sample's own occlusion.
 Vec3 PixelSum::expected(const Sample& sample, const Vec3& lit) const {
     return tone_mapped(exposure_ * (sample.own + times(lit, sample.plain)));
 }
 
-// Returns the contrast of the expected light of the samples.
+// Returns the largest difference between the samples' expected light.
 double PixelSum::contrast() const {
     const Vec3 all = lit();
     Vec3 lower = rooted(expected(kept_[0], all));
@@ -94,18 +94,18 @@ PixelLight PixelSum::mean() const {
     mean.slope = sum_.slope / rays_;
     mean.alpha = cover_ / samples_;
     const double bright = luminance(mean.light);
-    // The error of a single sample is unknown. It is taken as large as the sample itself.
+    // The error of a single sample is unknown and assumed to be as large as the sample.
     const double spread = samples_ == 1 ? bright * bright : sum_of_squares_ / samples_ - bright * bright;
     mean.variance = std::max(0.0, spread) / std::max(1, samples_ - 1);
     if (rays_ > samples_) correct(mean);
     return mean;
 }
 
-// Corrects the mean of the samples to the mean of all rays.
+// Replaces the mean of the samples by the control-variate estimate over all rays.
 void PixelSum::correct(PixelLight& mean) const {
     const Vec3 all = lit();
     Vec3 few, many;
-    double left = 0.0;  // sum of squares of the differences from the expected light
+    double left = 0.0;  // sum of the squared differences between actual and expected luminance
     double square = 0.0;
     double rest = 0.0;
     for (int k = 0; k < rays_; ++k) {
@@ -124,7 +124,7 @@ void PixelSum::correct(PixelLight& mean) const {
     mean.alpha = std::clamp(mean.alpha + seen_ / rays_ - seen_by_samples_ / samples_, 0.0, 1.0);
     const double bright = luminance(many / rays_);
     const double of_rest = left / samples_ - (rest / samples_) * (rest / samples_);
-    // At edges, the error of n stratified rays is about their standard deviation over n^(3/4).
+    // At edges, the error of the mean of n stratified rays is about their standard deviation divided by n^(3/4).
     const double of_rays = std::max(0.0, square / rays_ - bright * bright) / std::pow(rays_, 1.5);
     if (samples_ > 1) mean.variance = std::max(0.0, of_rest) / (samples_ - 1) + of_rays;
 }

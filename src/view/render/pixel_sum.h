@@ -1,8 +1,9 @@
 /// \file
-/// Sum of the samples of a pixel. If the samples are few, extra camera rays that trace only the sun add information.
-/// They measure how much of the pixel each surface covers and how much of it is in sunlight. Their mean expected light
-/// replaces the samples' mean expected light. The samples supply the difference between actual and expected light (a
-/// control variate). The limit for many samples is the same.
+/// Sum of the samples of a pixel. If there are few samples, extra camera rays reduce the noise at edges. An extra ray
+/// finds the visible surface and its sunlight, but not the light of the sky. The expected light of a ray assumes that
+/// the sky's light is occluded equally in the whole pixel. Expected light serves as a control variate. Its mean is
+/// computed over all rays, and the samples add the mean difference between actual and expected light. For many samples,
+/// the result converges to the same limit as without extra rays.
 #pragma once
 
 #include <array>
@@ -13,51 +14,51 @@
 
 namespace ricochet {
 
-/// Result of the samples of a pixel.
+/// Light and features of a pixel, computed from its samples.
 struct PixelLight {
-    Vec3 light;             ///< in the display's range, mean of the samples
+    Vec3 light;             ///< mean of the samples, in the display's range
     double variance = 0.0;  ///< variance of the mean's luminance
-    double alpha = 1.0;     ///< share of the samples that hit something, if the background is transparent
-    Vec3 normal;            ///< means over the samples
+    double alpha = 1.0;     ///< covered share of the pixel if the background is transparent, otherwise 1
+    Vec3 normal;            ///< mean over all rays, as are the members below
     Vec3 albedo;
     double distance = 0.0;  ///< m
     double slope = 0.0;     ///< in m per pixel
 };
 
-/// Largest number of camera rays of a pixel whose samples see different things. No extra rays are traced if there are
-/// as many samples.
+/// Largest number of samples and extra rays of a pixel together. If there are already as many samples, no extra rays
+/// are traced.
 inline constexpr int kGlances = 16;
 
-/// Result of a camera ray before the sky's light is traced. The defaults describe a ray without a hit.
+/// Result of a camera ray, without the light of the sky. The defaults describe a ray without a hit.
 struct Glance {
-    Vec3 own;    ///< known light: the surface's emission, the sun's light on it, and the background
-    Vec3 plain;  ///< further light of the surface if nothing occludes the sky
+    Vec3 own;    ///< the surface's emission and its reflected sunlight; the background's light if nothing is hit
+    Vec3 plain;  ///< the sky's light that the surface reflects if nothing occludes the sky
     Vec3 normal;
     Vec3 albedo{1, 1, 1};
     double distance = 0.0;      ///< m
     double slope = 0.0;         ///< in m per pixel
-    std::uint32_t surface = 0;  ///< a number for each known sphere; 0 for everything else
-    bool covers = true;         ///< true if it is part of the picture: a transparent background is not
+    std::uint32_t surface = 0;  ///< number of the sphere (from 1) if it is listed in KnownSpheres, otherwise 0
+    bool covers = true;         ///< false if the ray hits only a transparent background
 };
 
 /// Accumulator for the samples of a pixel.
 class PixelSum {
 public:
-    /// Sets the exposure, which multiplies light before it is shown.
+    /// Sets the exposure, which multiplies light before tone mapping.
     explicit PixelSum(double exposure = 1.0) : exposure_(exposure) {}
-    /// Adds a sample. `light` is the light of the surface or the background. `shown` is the result in the display's
-    /// range. `cover` is the covered share.
+    /// Adds a sample. `light` is the light of the surface or the background. `shown` is the sample's light after glass
+    /// and tone mapping. `cover` is the share of the ray that objects cover, 0..1.
     void add(const Glance& glance, const Vec3& light, const Vec3& shown, double cover);
-    /// Returns the number of extra rays that the pixel needs, at most kGlances together with the samples. The number
-    /// grows with the differences between the samples. It is the maximum if the samples differ on both sides of an
-    /// outline. It is 0 after kGlances samples. `has_outline` tells whether the outline of a known sphere can be
-    /// visible.
+    /// Returns the number of extra rays that the pixel needs, at most kGlances together with the samples. `has_outline`
+    /// is true if the outline of a known sphere can cross the pixel. The number increases with the differences between
+    /// the samples. It is the maximum if the pixel has an outline, and samples hit different surfaces and differ in
+    /// light. It is 0 after kGlances samples.
     [[nodiscard]] int rays_wanted(bool has_outline = false) const;
-    /// Returns the distance of the farthest surface of the samples, in m. It is infinite if a sample had no hit.
+    /// Returns the distance of the farthest surface that a sample hit, in m. Returns infinity if a sample had no hit.
     [[nodiscard]] double farthest() const { return farthest_; }
-    /// Adds a camera ray beyond the samples. Rays and samples together are at most kGlances.
+    /// Adds an extra camera ray. The caller adds all samples first, and at most kGlances samples and rays together.
     void add(const Glance& glance);
-    /// Returns the mean of the samples, at least one, and the extra rays.
+    /// Returns the mean of the samples and the extra rays. At least one sample is required.
     [[nodiscard]] PixelLight mean() const;
 
 private:
@@ -72,9 +73,9 @@ private:
 
     double exposure_;
     PixelLight sum_{{}, 0.0, 0.0, {}, {}, 0.0, 0.0};
-    double sum_of_squares_ = 0.0;  // squares of the luminance
-    Vec3 light_, plain_;           // sums of actual and of unoccluded light
-    double cover_ = 0.0;           // sums over the samples, and over all rays
+    double sum_of_squares_ = 0.0;  // sum of the squared luminance of the samples
+    Vec3 light_, plain_;           // sums of all light except Glance::own, and of Glance::plain
+    double cover_ = 0.0;           // sum over the samples
     double seen_ = 0.0;
     double seen_by_samples_ = 0.0;
     double farthest_ = 0.0;

@@ -12,7 +12,7 @@ namespace ricochet {
 namespace {
 
 constexpr double kCreaseDegrees = 40.0;
-constexpr double kClothCreaseDegrees = 180.0;  // folds of cloth are round
+constexpr double kClothCreaseDegrees = 180.0;  // no creases, because folds of cloth are round
 
 void store(float* target, const Vec3& p) {
     target[0] = static_cast<float>(p.x);
@@ -26,14 +26,14 @@ embree::Scene new_scene(RTCDevice device) {
     return scene;
 }
 
-// Returns true if a line emits visible light. The display's first step is 3e-4.
+// Returns true if a line emits visible light. Linear light below 3e-4 is displayed as black.
 bool shines(const PreviewLines& lines, std::size_t i) {
     constexpr double kDarkest = 1e-3;
     return !lines.emissions.empty() && luminance(lines.emissions[i]) > kDarkest;
 }
 
-// Returns the lamp of a glowing line. A convex body of surface A and brightness L has the mean intensity L A / (4 pi),
-// like a ball of the same surface.
+// Returns the light of a glowing line. A convex body with surface area A and brightness L has the same mean intensity
+// as a sphere with the same area, L A / (4 pi).
 GlowingLine glowing_line(const PreviewLines& lines, std::size_t i) {
     const auto [a, b] = lines.ends[i];
     const double radius = lines.radii[i];
@@ -42,7 +42,7 @@ GlowingLine glowing_line(const PreviewLines& lines, std::size_t i) {
     return {lines.points[a], lines.points[b], radius, size * lines.emissions[i]};
 }
 
-// Commits a finished geometry and attaches it to the scene under the given number.
+// Commits a geometry, attaches it to the scene under the given number, and releases it.
 void attach(RTCScene scene, RTCGeometry geometry, unsigned id) {
     rtcSetGeometryMask(geometry, 0xffffffffU);
     rtcCommitGeometry(geometry);
@@ -122,7 +122,7 @@ void Preview::Impl::build_spheres() {
     embree::check_device(device.get(), "building the picture's particles");
 }
 
-// Glowing lines have a scene of their own, so that rays that gather light can leave them out.
+// Glowing lines have their own scene, so that rays for the light on surfaces can leave them out.
 void Preview::Impl::add_lines(const PreviewLines& lines) {
     std::vector<std::size_t> dark, bright;
     glowing_lines.clear();
@@ -150,7 +150,7 @@ void Preview::Impl::add_lines(const PreviewLines& lines) {
     rtcCommitScene(glow_scene.get());
 }
 
-// Every line gets two points of its own, because lines that share a point can differ in radius.
+// The geometry stores two points per line, because lines that share a point can differ in radius.
 LineGroup Preview::Impl::attach_lines(const PreviewLines& lines, const std::vector<std::size_t>& drawn, RTCScene scene,
                                       MovingGeometry id) const {
     LineGroup group;

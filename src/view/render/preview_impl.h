@@ -12,16 +12,17 @@
 
 namespace ricochet {
 
-/// Geometries of the scene of moving objects. Spheres and glowing lines have scenes of their own.
+/// Geometry numbers in the scenes of moving objects and of glowing lines. The scene of moving objects contains neither
+/// spheres nor glowing lines.
 enum MovingGeometry : unsigned { kLines, kCloth, kCopies, kGlowingLines };
 
-/// Lines that are traced together, in the order of their primitives.
+/// Colours of the lines of one Embree geometry, in the order of its primitives.
 struct LineGroup {
     std::vector<Vec3> colors;
-    std::vector<Vec3> emissions;  // per line, or empty
+    std::vector<Vec3> emissions;  // one per line; empty: no line emits light
 };
 
-/// Meshes that are traced together; geometry k of the scene is mesh k.
+/// Meshes in one Embree scene; geometry k of the scene is mesh k.
 struct MeshGroup {
     embree::Scene scene;
     std::vector<DrawnMesh> meshes;
@@ -29,12 +30,12 @@ struct MeshGroup {
     [[nodiscard]] bool empty() const { return meshes.empty(); }
 };
 
-/// Embree's hit of a ray, with the source of the hit.
+/// Embree's hit of a ray, and the object that was hit.
 struct RayFind {
     RTCRayHit query;
-    unsigned geometry = RTC_INVALID_GEOMETRY_ID;  ///< number in the scene of the hit; invalid: no hit
-    const MeshGroup* group = nullptr;             ///< group of the hit scene; null: the scene of spheres or of moving
-                                                  ///< objects
+    unsigned geometry = RTC_INVALID_GEOMETRY_ID;  ///< geometry number in the scene that was hit; invalid: no hit
+    /// Group whose scene was hit; null: another scene (spheres, moving objects or glowing lines).
+    const MeshGroup* group = nullptr;
     bool is_sphere = false;
     CopyHit copy;
 };
@@ -46,16 +47,17 @@ struct Preview::Impl {
     embree::Scene moving_scene, sphere_scene, glow_scene;
     std::vector<PreviewPlane> planes;
     DrawnSpheres spheres;
-    std::vector<std::vector<Vec3>> sphere_ways;  // paths of the drawn spheres while the shutter is open; empty at rest
+    // Paths of the drawn spheres while the shutter is open; empty if no sphere moves.
+    std::vector<std::vector<Vec3>> sphere_ways;
     bool has_sphere_rays = false;
     LineGroup dark_lines, bright_lines;
-    std::vector<GlowingLine> glowing_lines;  // in the order of bright_lines
+    std::vector<GlowingLine> glowing_lines;  // lamps of the glowing lines, in the order of bright_lines
     DrawnMesh cloth;
     ShapeCopies copies;
     bool has_moving = false;
     Vec3 origin;
 
-    // Building, preview.cpp.
+    // Construction of the scenes, in preview.cpp.
     void take_spheres(PreviewSpheres&& source);
     void build_spheres();
     void add_lines(const PreviewLines& lines);
@@ -66,7 +68,7 @@ struct Preview::Impl {
     void add_mesh(MeshGroup& group, PreviewMesh mesh) const;
     void fill(MeshGroup& solid_ones, MeshGroup& glass_ones, std::vector<PreviewMesh> meshes) const;
 
-    // Rays, preview_rays.cpp.
+    // Ray tracing, in preview_rays.cpp.
     [[nodiscard]] bool is_traceable(const PreviewRay& ray) const;
     [[nodiscard]] bool traces(SphereRays rays) const;
     static void meet(const MeshGroup& group, RayFind& find);

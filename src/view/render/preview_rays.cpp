@@ -11,8 +11,9 @@
 namespace ricochet {
 namespace {
 
-/// Traces eight rays at once. A ray is traced if its entry of `valid` is -1 and skipped if it is 0. `valid` must be
-/// aligned to 32 bytes. Processors with AVX trace eight rays together. Others trace them one after the other.
+/// Traces eight rays at once. A ray is traced if its entry of `valid` is -1, and skipped if its entry is 0. `valid`
+/// must be aligned to 32 bytes. Processors with AVX trace eight rays in parallel. Other processors trace the rays one
+/// by one.
 void intersect8(const int* valid, RTCScene scene, embree::QueryContext& context, RTCRayHit8& ray_hits) {
 #if RTC_VERSION_MAJOR >= 4
     RTCIntersectArguments arguments;
@@ -71,7 +72,7 @@ RayFind new_find(const PreviewRay& ray, const Vec3& origin) {
     return find;
 }
 
-// Records the scene of the last query's hit.
+// If the last query found a hit, records the scene to which the hit belongs. Resets the hit for the next query.
 void note_source(RayFind& find, const MeshGroup* group, bool is_sphere) {
     if (find.query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
     find.geometry = find.query.hit.geomID;
@@ -80,7 +81,8 @@ void note_source(RayFind& find, const MeshGroup* group, bool is_sphere) {
     find.query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
 }
 
-// Writes a ray into a lane of Embree's layout. The ray's id is the lane number, because copies record their hit by id.
+// Writes a ray to a lane of Embree's packet. The ray's id is the lane number, because ShapeCopies stores hits by the
+// ray's id.
 template <class Rays>
 void set_lane(Rays& rays, std::size_t lane, const PreviewRay& ray, const Vec3& origin) {
     const RTCRay one = embree_ray(ray, origin);
@@ -96,7 +98,7 @@ void set_lane(Rays& rays, std::size_t lane, const PreviewRay& ray, const Vec3& o
     rays.id[lane] = static_cast<unsigned>(lane);
 }
 
-// Hits of a packet of rays; see RayFind for a single ray.
+// Hits of a packet of rays, with the members of RayFind for each lane.
 struct PacketFind {
     alignas(32) std::array<int, kPacketRays> valid{};
     RTCRayHit8 query{};

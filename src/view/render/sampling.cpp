@@ -3,7 +3,7 @@
 namespace ricochet {
 namespace {
 
-// Returns a well-mixed 32-bit value. Method: the integer finaliser of the hash "lowbias32", C. Wellons, 2018.
+// Returns a hash of a 32-bit value. Method: "lowbias32", C. Wellons, 2018.
 std::uint32_t mixed(std::uint32_t x) {
     x ^= x >> 16;
     x *= 0x7feb352dU;

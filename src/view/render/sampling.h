@@ -1,8 +1,8 @@
 /// \file
-/// Sample numbers of pixels. Every pair of dimensions is well stratified, every pixel has different numbers, and the
-/// numbers do not depend on the number of threads.
-/// Method: Owen-scrambled (0, 2)-sequences by hashing: B. Burley, "Practical Hash-based Owen Scrambling", Journal of
-/// Computer Graphics Techniques 9(4), 2020. Points: I. M. Sobol, 1967, first two dimensions.
+/// Quasi-random numbers for the samples of pixels. Each pair of dimensions is well stratified, and the pixels have
+/// different numbers. The numbers do not depend on the number of threads.
+/// Method: the first two dimensions of I. M. Sobol's sequence (1967), with Owen scrambling by hashing (B. Burley,
+/// "Practical Hash-based Owen Scrambling", Journal of Computer Graphics Techniques 9(4), 2020).
 #pragma once
 
 #include <array>
@@ -25,11 +25,10 @@ struct DiscPoint {
     double y = 0.0;
 };
 
-/// Maps a pair uniformly to the unit disc. The angle is v turns, to 3e-9, and the squared radius is u.
-/// The function uses series around the nearest quarter turn, because a general library sine takes longer than many of
-/// its uses here.
+/// Maps a pair uniformly to the unit disc. The angle is v turns, with an error of at most 3e-9. The squared radius is
+/// u. Sine and cosine are computed by series around the nearest quarter turn, because library functions are slower.
 [[nodiscard]] inline DiscPoint on_disc(const SamplePair& at) {
-    const int quarter = static_cast<int>(4.0 * at.v + 0.5);  // v is not negative
+    const int quarter = static_cast<int>(4.0 * at.v + 0.5);  // the cast rounds down, because v is not negative
     const double t = (4.0 * at.v - quarter) * (0.5 * std::numbers::pi);
     const double q = t * t;
     const double sine =
@@ -39,14 +38,14 @@ struct DiscPoint {
         q * (1.0 / 2.0) *
             (1.0 - q * (1.0 / 12.0) * (1.0 - q * (1.0 / 30.0) * (1.0 - q * (1.0 / 56.0) * (1.0 - q * (1.0 / 90.0)))));
     const double radius = std::sqrt(at.u);
-    // Tables avoid branches on the quarter, which a processor cannot predict.
+    // Tables replace branches on the quarter, because a processor cannot predict these branches.
     constexpr std::array<double, 4> kSigns = {1.0, 1.0, -1.0, -1.0};
     const std::array<double, 2> either = {radius * cosine, radius * sine};
     const auto turns = static_cast<std::size_t>(quarter & 3);
     return {kSigns[(turns + 1) & 3] * either[turns & 1], kSigns[turns] * either[(turns & 1) ^ 1]};
 }
 
-/// Bit operations of PixelSamples.
+/// Factor that maps 32-bit integers to [0, 1).
 namespace sampling {
 
 inline constexpr double kUnit = 1.0 / 4294967296.0;
@@ -60,8 +59,8 @@ inline constexpr double kUnit = 1.0 / 4294967296.0;
     return ((x & 0x55555555U) << 1) | ((x & 0xaaaaaaaaU) >> 1);
 }
 
-/// Applies Owen's scrambling of the bits from the highest down (Burley 2020, listing 3) to a number whose bits are
-/// reversed.
+/// Applies Owen scrambling (Burley 2020, listing 3) to a number whose bits are given in reverse order. The result has
+/// normal bit order.
 [[nodiscard]] inline std::uint32_t scrambled_reversed(std::uint32_t x, std::uint32_t seed) {
     x += seed;
     x ^= x * 0x6c50b47cU;
@@ -71,11 +70,10 @@ inline constexpr double kUnit = 1.0 / 4294967296.0;
     return reversed_bits(x);
 }
 
-/// Returns the second dimension of Sobol's sequence with its bits reversed. The first dimension is the index with
-/// reversed bits.
-/// The direction numbers are the powers of 1 + t over the field of two elements. The bits are the coefficients of a
-/// polynomial in t, in which 1 + t replaces t. The substitution works half by half, because (1 + t)^16 = 1 + t^16 in
-/// this field, and so on.
+/// Returns the second dimension of Sobol's sequence with its bits in reverse order. The first dimension is the index in
+/// reversed bit order. The bits of the index are the coefficients of a polynomial in t over the field of two elements.
+/// The function substitutes 1 + t for t. In this field (1 + t)^16 = 1 + t^16, and so on for 8, 4, 2 and 1. Each line
+/// therefore substitutes one power for all coefficients at once.
 [[nodiscard]] inline std::uint32_t reversed_sobol_second(std::uint32_t index) {
     index ^= index >> 16;
     index ^= (index & 0xff00ff00U) >> 8;
@@ -86,22 +84,22 @@ inline constexpr double kUnit = 1.0 / 4294967296.0;
 
 }  // namespace sampling
 
-/// Purpose of a sample pair. Pairs of different purposes are independent.
+/// Use of a sample pair. Pairs of different purposes are independent.
 enum class SamplePurpose : std::uint32_t { pixel, lens, sun, sky, far_sun, lamp };
 inline constexpr std::size_t kSamplePurposes = 6;
 
-/// The samples of one pixel.
+/// Generator of the sample numbers of one pixel.
 class PixelSamples {
 public:
     PixelSamples(int x, int y);
-    /// Returns the pair of a sample (0, 1, ...). The first 2^k samples are stratified in every elementary interval of
-    /// the square.
+    /// Returns the pair of a sample (0, 1, ...). Each elementary interval of area 2^-k in the unit square contains
+    /// exactly one of the first 2^k pairs.
     [[nodiscard]] SamplePair get(int sample, SamplePurpose purpose) const;
-    /// Returns the time of a sample within the shutter interval, as get() does in one dimension.
+    /// Returns the time of a sample within the exposure, in [0, 1). The times are stratified like the pairs of get().
     [[nodiscard]] double time(int sample) const;
 
 private:
-    // Seeds for the order of the pairs of a purpose, and for its two dimensions.
+    // Seeds of one purpose: for the order of its pairs, and for the two dimensions.
     struct Seeds {
         std::uint32_t order = 0, first = 0, second = 0;
     };
@@ -111,7 +109,7 @@ private:
 
 inline SamplePair PixelSamples::get(int sample, SamplePurpose purpose) const {
     const Seeds& seeds = seeds_[static_cast<std::size_t>(purpose)];
-    // Scrambling the index shuffles the order, so that pairs of two purposes are independent.
+    // The scrambled index shuffles the order of the pairs, so that the pairs of two purposes are independent.
     const std::uint32_t index =
         sampling::scrambled_reversed(sampling::reversed_bits(static_cast<std::uint32_t>(sample)), seeds.order);
     return {sampling::scrambled_reversed(index, seeds.first) * sampling::kUnit,

@@ -9,9 +9,10 @@ namespace ricochet {
 namespace {
 
 constexpr double kShapeCopiesCreaseDegrees = 40.0;
-constexpr double kFlattest = 1e-9;  // limit of a map's determinant, relative to the cube of its longest row
+// Least determinant of a drawable copy's map, relative to the cube of the map's longest row.
+constexpr double kFlattest = 1e-9;
 
-// Returns the inverse of the linear part.
+// Returns the inverse of the map's linear part.
 AffineMap inverse_of(const AffineMap& map) {
     const double scale = 1.0 / map.determinant();
     const Vec3 a = scale * cross(map.row_y, map.row_z);
@@ -91,7 +92,7 @@ void ShapeCopies::write_bounds(const RTCBoundsFunctionArguments* args) {
     const auto& self = *static_cast<const ShapeCopies*>(args->geometryUserPtr);
     const Copy& copy = self.copies_[args->primID];
     const Vec3 center = self.shutter_paths_.empty() ? copy.center : self.shutter_paths_[args->primID][args->timeStep];
-    // The box is widened to cover single-precision rounding.
+    // The box is widened by the rounding errors of single precision.
     constexpr double kWider = 1.0 + 1e-5;
     const double rounding = 1e-6 * max_abs(center);
     const Vec3 half = kWider * copy.half_size + Vec3{rounding, rounding, rounding};
@@ -180,7 +181,7 @@ void ShapeCopies::occlude(const RTCOccludedFunctionNArguments* args) {
     }
 }
 
-// Transforms a normal by the transposed inverse.
+// Transforms a normal to world coordinates by the transposed inverse of the copy's map.
 Vec3 ShapeCopies::world_normal(std::size_t copy, const Vec3& shape_normal) const {
     return normalized(copies_[copy].shape_from_world.direction_back(shape_normal));
 }

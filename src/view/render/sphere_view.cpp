@@ -9,23 +9,26 @@
 namespace ricochet {
 namespace {
 
-constexpr std::size_t kBlock = 1024;   // spheres per unit of parallel work
-constexpr double kMostCovered = 24.0;  // limit for the pixels that spheres cover, relative to the pixels of the picture
-constexpr double kMargin = 0.01;       // pixels, for rounding
+constexpr std::size_t kBlock = 1024;  // spheres per unit of parallel work
+// Largest sum of the pixels that spheres cover, relative to the pixels of the picture.
+constexpr double kMostCovered = 24.0;
+constexpr double kMargin = 0.01;  // margin of spots for rounding errors, in pixels
 
-// Returns the slopes of the two tangents from the origin to a circle. Its centre is at `ahead` > radius and `across`.
+// Returns the slopes of the two tangents from the origin to a circle with its centre at (ahead, across). `ahead` must
+// exceed the radius.
 std::array<double, 2> slopes_of(double across, double ahead, double radius) {
     const double under = ahead * ahead - radius * radius;
     const double spread = radius * std::sqrt(across * across + under);
     return {(across * ahead - spread) / under, (across * ahead + spread) / under};
 }
 
-// Returns the first of `count` pixels whose middle is not below `at`. Any value of `at` is valid.
+// Returns the first of `count` pixels whose middle is at or above the coordinate `at`, or `count` if there is none. Any
+// value of `at` is valid.
 int pixel_from(double at, int count) {
     return static_cast<int>(std::clamp(std::ceil(at - 0.5), 0.0, static_cast<double>(count)));
 }
 
-// A sphere, and the tiles [begin, end) of a row in which it can be visible.
+// Sphere, and the tiles [begin, end) of a row in which it can be visible.
 struct KeptSpot {
     NearSphere sphere;
     std::size_t begin = 0;
@@ -91,7 +94,7 @@ SphereView::Spot SphereView::spot_of(const Vec3& center, double radius) const {
     spot.up = dot(away, frame_.up);
     spot.power = dot(away, away) - radius * radius;
     if (spot.ahead <= -radius) return spot;
-    if (spot.ahead <= radius * (1.0 + 1e-9)) {  // beside the camera, or around it
+    if (spot.ahead <= radius * (1.0 + 1e-9)) {  // the sphere extends behind the camera's plane
         spot.right = width_;
         spot.bottom = height_;
         return spot;
@@ -121,8 +124,8 @@ void SphereView::find(int band, std::span<SphereFind> finds) const {
     }
 }
 
-// A ray of direction d = forward + x right + y up, not normalized, hits the sphere at
-// |d|^2 t^2 - 2 (d . away) t + power = 0.
+// The ray of a pixel has the direction d = forward + x right + y up, which is not normalized. It hits the sphere at the
+// solutions t of |d|^2 t^2 - 2 (d . away) t + power = 0.
 void SphereView::cover_row(const Spot& spot, std::uint32_t sphere, int row, std::span<SphereFind> finds) const {
     const double slope = up_[static_cast<std::size_t>(row)];
     const double row_middle = spot.ahead + slope * spot.up;
@@ -169,8 +172,8 @@ SphereTiles SphereView::tiles(int top, int bottom, int tile_width) const {
     return out;
 }
 
-// A ray of unit direction d hits a sphere at t^2 - 2 (d . away) t + power = 0. All rays are tested at once, because
-// few spheres are hit by any ray.
+// A ray with the unit direction d hits a sphere at the solutions t of t^2 - 2 (d . away) t + power = 0. The first loop
+// tests all rays without branches, because most spheres are hit by no ray.
 void meet_spheres(std::span<const NearSphere> spheres, std::span<const PreviewRay> rays, std::span<SphereFind> finds) {
     std::array<double, kPacketRays> x{};
     std::array<double, kPacketRays> y{};
@@ -206,8 +209,8 @@ void meet_spheres(std::span<const NearSphere> spheres, std::span<const PreviewRa
     }
 }
 
-// Spheres are processed nearest first. A sphere that covers the whole neighbourhood of a ray hides everything behind
-// it.
+// Spheres are processed nearest first. If a sphere covers the whole neighbourhood of a ray, it hides all outlines
+// behind it.
 std::array<bool, kPacketRays> outlines_about(std::span<const PreviewRay> rays, std::span<const NearSphere> spheres,
                                              double slope) {
     std::array<bool, kPacketRays> found{};
@@ -219,8 +222,8 @@ std::array<bool, kPacketRays> outlines_about(std::span<const PreviewRay> rays, s
         for (std::size_t k = 0; k < rays.size(); ++k) {
             if (done[k] || sphere.nearest > rays[k].reach) continue;
             const double middle = dot(rays[k].direction, sphere.away);
-            if (middle <= 0.0 && sphere.power > 0.0) continue;  // behind the camera on this ray
-            const double off = square - middle * middle;        // squared distance of the ray from the centre
+            if (middle <= 0.0 && sphere.power > 0.0) continue;  // the sphere is behind the camera on this ray
+            const double off = square - middle * middle;        // squared distance of the ray from the sphere's centre
             const double margin = slope * middle;
             const double outer = sphere.radius + margin;
             const double inner = sphere.radius - margin;

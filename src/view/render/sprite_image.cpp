@@ -25,8 +25,8 @@ SpriteImage::SpriteImage(const Image& image)
     while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(half_of(levels_.back()));
 }
 
-// Returns the next coarser level. Each texel is the mean of the area under it, so that odd sizes preserve the mean of
-// the image.
+// Returns the next coarser level. Each texel is the mean of the area that it covers in the finer level. The mean of the
+// image is therefore preserved for odd sizes too.
 SpriteImage::Level SpriteImage::half_of(const Level& level) {
     struct Part {
         std::size_t from = 0;
@@ -63,7 +63,7 @@ SpriteImage::Level SpriteImage::half_of(const Level& level) {
     return out;
 }
 
-// Interpolates between the four nearest texels.
+// Interpolates linearly between the four nearest texels.
 SpriteTexel SpriteImage::at_level(const Level& level, double x, double y) {
     const double across = x * level.width - 0.5;
     const double down = y * level.height - 0.5;
@@ -96,7 +96,7 @@ SpriteTexel SpriteImage::at(double x, double y, double texels) const {
     return {(1.0 - part) * fine.light + part * coarse.light, (1.0 - part) * fine.cover + part * coarse.cover};
 }
 
-// The smaller levels take a third more, and the source image takes 4 bytes per pixel.
+// The coarser levels together take a third of the finest level. The source image takes 4 bytes per pixel.
 double SpriteImage::bytes(double pixels) { return pixels * (4.0 / 3.0 * sizeof(Texel) + 4.0); }
 
 }  // namespace ricochet

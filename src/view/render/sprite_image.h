@@ -1,6 +1,6 @@
 /// \file
-/// Image of sprites, sampled at any size.
-/// Method: L. Williams, "Pyramidal Parametrics", SIGGRAPH 1983 (levels of halved size, interpolated).
+/// Image of sprites, which can be sampled at any size.
+/// Method: mipmaps, L. Williams, "Pyramidal Parametrics", SIGGRAPH 1983.
 #pragma once
 
 #include <vector>
@@ -10,25 +10,25 @@
 
 namespace ricochet {
 
-/// Light and coverage at a point of an image.
+/// Light and coverage of a point of an image.
 struct SpriteTexel {
-    Vec3 light;          ///< linear, multiplied by cover
+    Vec3 light;          ///< linear light, premultiplied by cover
     double cover = 0.0;  ///< 0..1
 };
 
-/// An image with levels of detail. It is transparent outside its bounds.
+/// Image with mipmap levels. It is transparent outside its bounds.
 class SpriteImage {
 public:
     /// `image` must have at least one pixel.
     explicit SpriteImage(const Image& image);
 
-    /// Returns half the width and half the height, scaled so that the longer one is 1.
+    /// Returns half the width, in a unit in which half the longer edge is 1. half_height() uses the same unit.
     [[nodiscard]] double half_width() const { return half_width_; }
     [[nodiscard]] double half_height() const { return half_height_; }
     [[nodiscard]] int width() const { return levels_[0].width; }
     [[nodiscard]] int height() const { return levels_[0].height; }
-    /// Samples the image. x and y are in 0..1 from the upper left corner. `texels` is the number of texels per pixel
-    /// of the picture.
+    /// Samples the image. (x, y) is (0, 0) at the upper left corner and (1, 1) at the lower right corner. `texels` is
+    /// the number of texels per pixel of the picture, along an edge.
     [[nodiscard]] SpriteTexel at(double x, double y, double texels) const;
     /// Returns the memory of an image with the given number of pixels, in bytes.
     [[nodiscard]] static double bytes(double pixels);

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::size_t kRows = 16;        // rows per unit of parallel work
 constexpr std::size_t kDiscs = 256;      // discs per unit of parallel work
-constexpr double kSmallestRadius = 0.8;  // pixels
-constexpr double kGlowReach = 2.5;       // radius of a glow, relative to the particle's radius
+constexpr double kSmallestRadius = 0.8;  // least radius on the screen, in pixels
+constexpr double kGlowReach = 2.5;       // radius of a glowing disc, relative to the particle's radius
 
-// A disc on the screen, in pixels.
+// Disc on the screen. Lengths except `depth` are in pixels.
 struct Disc {
     double x = 0.0;
     double y = 0.0;

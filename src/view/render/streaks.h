@@ -1,5 +1,5 @@
 /// \file
-/// Balls drawn as threads along their path while the shutter is open.
+/// Spheres drawn as lines along their path while the shutter is open.
 #pragma once
 
 #include <optional>
@@ -11,18 +11,17 @@
 
 namespace ricochet {
 
-/// A ball and its path.
+/// Sphere and its path.
 struct Streak {
-    std::span<const PathNode> nodes;  ///< at least one, in the order of time
-    double from = 0.0, to = 0.0;      ///< drawn interval of the path, in s
+    std::span<const PathNode> nodes;  ///< at least one node, in order of time
+    double from = 0.0, to = 0.0;      ///< start and end of the drawn interval of the path, in s
     double radius = 0.0;              ///< m, > 0
     Vec3 color;
-    std::optional<Vec3> emission{};  ///< emitted light; either all streaks and other lines of a picture have it, or
-                                     ///< none
+    std::optional<Vec3> emission{};  ///< emitted light; either all lines of a picture have a value, or none
 };
 
-/// Adds a streak to the drawn lines. It is as bright as the ball and gives the light of one ball in total. The light
-/// is distributed over the path by the time that the ball spends there, whatever the total duration.
+/// Adds the lines of a streak. The lines are as bright as the sphere, and together they give their surroundings the
+/// light of one sphere. Each line's part of this light is the sphere's share of time on the line.
 void add_streak(const Streak& streak, PreviewLines& lines);
 
 }  // namespace ricochet

@@ -11,22 +11,24 @@ namespace ricochet {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kFlat = 1e-12;         // least magnitude of the slope of a ray to the light; avoids a division by zero
-constexpr double kEntries = 10.0;       // limit for the mean number of cells per sphere
-constexpr double kMostAcross = 2048.0;  // cells
+// Least magnitude of the tangent of a ray to the light; avoids a division by zero.
+constexpr double kFlat = 1e-12;
+constexpr double kEntries = 10.0;       // largest mean number of cells per sphere
+constexpr double kMostAcross = 2048.0;  // largest number of cells along an edge of the grid
 constexpr std::size_t kBlock = 4096;    // cells per unit of parallel work
 
-// Cells of one grid coordinate that a ray crosses. Coordinates are in cells. They change by `slope` per m of height
-// above the ray's start. The code avoids branches on the sign of the slope, which a processor cannot predict.
+// Traversal of the grid by a ray, along one grid coordinate. The ray's coordinate, in cells, changes by `slope` per m
+// of height above the ray's start. The code avoids branches on the sign of the slope, because a processor cannot
+// predict these branches.
 struct GridWalk {
     double at, slope, per_slope, ahead;
-    std::size_t count;      // cells
-    std::size_t change;     // step from cell to cell: 1, or -1 by overflow
-    double enters, leaves;  // heights of the ray at the ends of the grid
+    std::size_t count;      // number of cells
+    std::size_t change;     // step from cell to cell: 1, or -1 as an unsigned number
+    double enters, leaves;  // heights at which the ray enters and leaves the grid
     std::size_t cell = 0;
     double next = 0.0;  // height at which the ray leaves the cell
 
-    // `tangent` is the tangent of the ray to the light along the coordinate. `per_size` is in cells per m.
+    // `tangent` is the change of the coordinate per unit of height along the ray. `per_size` is in cells per m.
     GridWalk(double start, double tangent, double per_size, std::size_t cells)
         : at(start),
           slope(std::copysign(std::max(std::fabs(tangent), kFlat), tangent) * per_size),
@@ -75,7 +77,8 @@ SunShadows::Shade SunShadows::shade_of(const Vec3& center, double radius) const 
     return {dot(center, across_), dot(center, along_), dot(center, to_light_), radius};
 }
 
-// Returns an upper bound for the number of cell entries of all spheres.
+// Returns an upper bound for the number of entries in the cells, summed over all spheres. `size` is the edge length of
+// a cell, in m.
 double SunShadows::entries(const std::vector<Shade>& shades, double size) const {
     double sum = 0.0;
     for (const Shade& shade : shades) {
@@ -85,7 +88,7 @@ double SunShadows::entries(const std::vector<Shade>& shades, double size) const 
     return sum;
 }
 
-// Chooses the smallest cells that the memory limit allows.
+// Chooses the smallest cells for which the grid and its entries stay within the memory limits.
 void SunShadows::choose_grid(const std::vector<Shade>& shades) {
     double right = -kNever;
     double high = -kNever;
@@ -96,7 +99,8 @@ void SunShadows::choose_grid(const std::vector<Shade>& shades) {
         low_ = std::min(low_, shade.v - shade.radius);
         high = std::max(high, shade.v + shade.radius);
     }
-    const double extent = std::max({right - left_, high - low_, 1e-300});  // spheres very far away can have zero extent
+    // The extent of very distant spheres can round to zero.
+    const double extent = std::max({right - left_, high - low_, 1e-300});
     const auto count = static_cast<double>(shades.size());
     double size = extent / kMostAcross;
     const auto cells = [&] { return ((right - left_) / size + 1.0) * ((high - low_) / size + 1.0); };
@@ -163,7 +167,7 @@ bool SunShadows::covers(const Vec3& point) const {
     return false;
 }
 
-// Returns the mean number of spheres over a cell, as seen from a sphere.
+// Returns the number of spheres in a cell, averaged over the entries of all cells.
 double SunShadows::crowd() const {
     double sum = 0.0;
     for (std::size_t cell = 0; cell + 1 < first_.size(); ++cell) {
@@ -173,21 +177,22 @@ double SunShadows::crowd() const {
     return sum;
 }
 
-// Most rays stop at one of the first spheres of their cell. This fails if all spheres share one cell because of
-// distant outliers.
+// Most queries end at one of the first spheres of their cell. This fails if distant outliers make the cells so large
+// that one cell contains most spheres.
 bool SunShadows::pays() const {
     constexpr double kMostCrowded = 2000.0;
     return over_.empty() || crowd() < kMostCrowded;
 }
 
-// The cost of a ray is the number of spheres over the cells that it crosses.
+// The cost of a query is the number of spheres in the cells that the ray crosses.
 bool SunShadows::pays(double slope) const {
     constexpr double kMostLooks = 150.0;
     if (over_.empty()) return true;
     return crowd() * (1.0 + slope * (top_ - bottom_) * per_size_) < kMostLooks;
 }
 
-// Returns true if a sphere over a cell blocks the ray between two heights above the ray's start.
+// Returns true if a sphere of the cell blocks the ray. Only spheres that overlap the interval [low, high] of heights
+// above the ray's start are tested.
 bool SunShadows::covers_within(std::size_t cell, const Slanted& ray, double low, double high) const {
     for (std::size_t k = first_[cell]; k < first_[cell + 1]; ++k) {
         const Shade& shade = over_[k];
@@ -203,7 +208,7 @@ bool SunShadows::covers_within(std::size_t cell, const Slanted& ray, double low,
     return false;
 }
 
-// Steps through the cells in order of the height at which the ray leaves each.
+// Visits the cells in the order in which the ray crosses them.
 bool SunShadows::covers(const Vec3& point, const Vec3& direction) const {
     if (direction == to_light_) return covers(point);
     if (over_.empty()) return false;

@@ -1,5 +1,5 @@
-// Sprites with an image: squares that face the camera, composited from far to near. Each part is visible only if
-// nothing solid is nearer.
+// Draws sprites with an image as squares that face the camera, from far to near. A pixel of a sprite is visible if no
+// solid object is nearer.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,18 +14,18 @@ namespace ricochet {
 namespace {
 
 constexpr std::size_t kRows = 16;        // rows per unit of parallel work
-constexpr double kSmallestRadius = 0.8;  // pixels
-constexpr int kProbes = 4;               // rays per pixel that find solid objects in front of the sprites
+constexpr double kSmallestRadius = 0.8;  // least radius on the screen, in pixels
+constexpr int kProbes = 4;               // number of rays per pixel that find solid objects in front of the sprites
 
-// A square on the screen, in pixels.
+// Square on the screen. Lengths except `depth` are in pixels.
 struct Square {
     double x = 0.0;
     double y = 0.0;
     double radius = 0.0;  // half the longer edge
-    double reach = 0.0;   // half the diagonal
+    double reach = 0.0;   // half the diagonal of the image
     double cosine = 1.0;
     double sine = 0.0;
-    double depth = 0.0;  // m along the view
+    double depth = 0.0;  // distance along the direction of view, in m
     double strength = 0.0;
     Vec3 color;
 };
@@ -62,7 +62,7 @@ public:
         return out;
     }
 
-    // Returns the depth of the first solid object along the view, in m.
+    // Returns the depth of the first solid object at a point of the screen, in m.
     [[nodiscard]] double solid_depth(const Preview& preview, double x, double y) const {
         const Vec3 ahead =
             frame_.forward + (x - 0.5 * width_) / scale_ * frame_.right + (0.5 * height_ - y) / scale_ * frame_.up;
@@ -76,7 +76,7 @@ private:
     double width_, height_, scale_;
 };
 
-// Depths of solid objects in some rows of the picture, traced on demand.
+// Depths of solid objects in some rows of the picture. The rays of a pixel are traced on the first request.
 class SolidDepths {
 public:
     SolidDepths(const Preview& preview, const Screen& screen, std::size_t first_row, std::size_t rows, int width)
@@ -87,7 +87,7 @@ public:
           depths_(rows * width_),
           known_(rows * width_, 0) {}
 
-    // Returns the share of a pixel in which nothing solid is nearer than `depth`.
+    // Returns the share of a pixel in which no solid object is nearer than `depth`.
     [[nodiscard]] double open_part(std::size_t x, std::size_t y, double depth) {
         const std::size_t at = (y - first_row_) * width_ + x;
         std::array<double, kProbes>& here = depths_[at];

@@ -12,14 +12,15 @@ namespace {
 
 long rounded_channel(double linear) { return std::lround(255.0 * srgb_from_linear(linear)); }
 
-// Table for rounded_channel() without a power function. It stores the start of each channel, and the channel at the
-// lower end of each cell of 0..1. The cells are narrower than any channel.
+// Lookup table for rounded_channel(), which avoids its power function. The table stores the smallest value of each
+// channel. It also divides 0..1 into cells and stores the channel at the lower end of each cell. Cells are narrower
+// than the interval of any channel, so a cell contains at most two channels.
 class ChannelTable {
 public:
     ChannelTable() {
         starts_[0] = 0.0;
         for (std::size_t k = 1; k < kChannels; ++k) starts_[k] = start_of(static_cast<long>(k));
-        starts_[kChannels] = 2.0;  // beyond all
+        starts_[kChannels] = 2.0;  // above all values
         for (std::size_t cell = 0; cell <= kCells; ++cell) {
             channels_[cell] = static_cast<std::uint8_t>(rounded_channel(static_cast<double>(cell) / kCells));
         }
@@ -37,7 +38,7 @@ private:
     static constexpr std::size_t kCells = 4096;  // a power of two, so that `inside * kCells` is exact at the cell
                                                  // boundaries
 
-    // Returns the smallest number whose channel is not below k.
+    // Returns the smallest linear value whose channel is at least k.
     static double start_of(long k) {
         const double about = linear_from_srgb((static_cast<double>(k) - 0.5) / 255.0);
         double below = about * (1.0 - 1e-9);

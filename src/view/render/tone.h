@@ -1,5 +1,5 @@
 /// \file
-/// Tone mapping from light to the display's range.
+/// Tone mapping: conversion of light to the display's range.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,15 @@
 
 namespace ricochet {
 
-/// Returns the perceived brightness of a linear colour.
+/// Returns the luminance of a colour in linear light (Rec. 709 primaries).
 [[nodiscard]] inline double luminance(const Vec3& light) {
     return 0.2126 * light.x + 0.7152 * light.y + 0.0722 * light.z;
 }
 
-/// Multiplies channel by channel, for example the light of one colour with a surface of the other.
+/// Returns the product of each channel, for example of a light and the colour of a surface that reflects it.
 [[nodiscard]] inline Vec3 times(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
-/// Maps brightness to the display range: L (1 + L / white^2) / (1 + L) on the luminance, with the hue preserved.
+/// Maps light to the display's range. The luminance L becomes L (1 + L / white^2) / (1 + L), and the hue is preserved.
 /// Method: E. Reinhard et al., "Photographic Tone Reproduction for Digital Images", SIGGRAPH 2002, eq. 4.
 [[nodiscard]] inline Vec3 tone_mapped(const Vec3& light) {
     constexpr double kWhite = 3.0;
@@ -25,7 +25,7 @@ namespace ricochet {
     return light * ((1.0 + bright * (1.0 / (kWhite * kWhite))) / (1.0 + bright));
 }
 
-/// Returns the sRGB channel of a linear value, 0..255.
+/// Returns the sRGB channel, 0..255, of a value in linear light.
 [[nodiscard]] std::uint8_t display_channel(double linear);
 
 }  // namespace ricochet

@@ -8,7 +8,7 @@
 namespace ricochet {
 namespace {
 
-constexpr std::uint64_t kSeed = 0x7475726e;  // constant, because pictures have no seed of their own
+constexpr std::uint64_t kSeed = 0x7475726e;  // constant, because a picture has no seed
 constexpr std::uint32_t kTurnStream = 1;
 constexpr std::uint32_t kAxisStream = 2;
 

@@ -58,8 +58,8 @@ namespace {
 
 constexpr std::uint64_t kSeed = 1;
 
-// Edge lengths from which build_near starts, in m. The first one is coarse enough for every ground except the terrain,
-// which needs a still coarser mesh.
+// Edge lengths at which build_near() starts, in m. The terrain is larger than the other grounds and needs a coarser
+// start.
 constexpr double kCoarseEdge = 0.25;
 constexpr double kCoarseTerrainEdge = 15.0;
 
@@ -71,7 +71,7 @@ TriangleMesh make_rough_bowl(double edge) {
     return mesh;
 }
 
-// Creates a bin that is open at the top, with its floor in z = 0.
+// Creates a bin that is open at the top. Its floor is in the plane z = 0.
 TriangleMesh make_bin(double edge) {
     constexpr double kWalls = 0.8;
     TriangleMesh mesh = meshes::make_box({.length = 0.2, .width = 0.2, .height = kWalls}, edge);
@@ -97,7 +97,7 @@ TriangleMesh make_ground(Ground ground, double edge) {
         case Ground::bin:
             return make_bin(edge);
         case Ground::rocks:
-            break;  // make_rocks() creates them
+            break;  // make_rocks() creates the rocks
     }
     throw InputError("a benchmark case names a ground that does not exist");
 }
@@ -105,8 +105,8 @@ TriangleMesh make_ground(Ground ground, double edge) {
 // Particles per unit of parallel work.
 constexpr std::size_t kBlock = 4096;
 
-// Random numbers of the radii have a separate stream. Points and spheres then start at the same positions if these
-// suit.
+// Radii use a separate stream of random numbers. Points and spheres therefore start at the same positions, except where
+// a sphere would overlap the ground.
 constexpr std::uint32_t kPlaceStream = 0;
 constexpr std::uint32_t kRadiusStream = 1;
 
@@ -121,8 +121,8 @@ double radius_of(const Case& c, std::uint64_t index) {
     return c.least_radius * portable_pow(c.largest_radius / c.least_radius, random.uniform());
 }
 
-// Returns the lattice positions of a case. Inside a closed ground, a sphere must stay clear of the ground at every
-// allowed offset from its lattice position.
+// Returns the lattice positions of a case. In a closed ground, the distance to the ground must be at least half the
+// pitch. A sphere then does not overlap the ground, whatever its random offset.
 std::vector<Vec3> lattice_places(const Case& c, const Insides* insides) {
     std::vector<Vec3> places;
     const Vec3 size = c.box.size();
@@ -224,11 +224,11 @@ void return_freed_memory() { (void)::malloc_trim(0); }
 MemoryUse measure_memory(const Case& c, const std::shared_ptr<const TriangleMesh>& mesh,
                          const std::vector<Particle>& particles) {
     const auto held = [&](const std::vector<Particle>& who) { return held_by_simulation(make_setup(c, mesh), who); };
-    (void)held({});  // one-time allocations of the first simulation of a process
+    (void)held({});  // excludes one-time allocations of the first simulation in a process
     const double mesh_bytes =
         static_cast<double>(sizeof(Vec3) * mesh->vertices.capacity() + sizeof(Triangle) * mesh->triangles.capacity());
     MemoryUse use;
-    // Counted instead of measured by the allocator, because Embree maps large blocks by itself.
+    // The bytes are counted instead of measured, because Embree maps large blocks without the allocator.
     std::vector<ColliderDescription> colliders = colliders_of(c, mesh);
     for (ColliderDescription& collider : colliders) {
         collider.frame.clear();
@@ -252,7 +252,7 @@ std::vector<Flight> flights_of(const Particles& particles) {
     return flights;
 }
 
-/// Returns true before the steps whose segments the references get.
+/// Returns true if the references get the flights of the state before this step.
 bool is_snapshot(std::uint64_t step, const Case& c) {
     const std::uint64_t snapshots = std::clamp<std::uint64_t>(kReferenceFlights / c.particles, 1, c.steps);
     return step == 0 || step * snapshots / c.steps != (step - 1) * snapshots / c.steps;
@@ -304,7 +304,8 @@ bool CaseRun::prepare(const Announce& announce) {
     if (!scout(announce, states)) return false;
     if (!announce("references", 0)) return false;
     reference_.emplace(*mesh_, states, NativeRays::BounceRules{case_.time_step, case_.restitution});
-    // Other responses let particles enter the wall, and the references would start there.
+    // Leaks are counted only for exact. Other responses let particles enter the wall, and flights of the references
+    // would start inside the wall.
     const std::optional<Vec3> heart = heart_of(case_.ground);
     if (heart && case_.response == ResponseKind::exact) reference_->count_leaks(*mesh_, *heart);
     if (case_.moves == Moves::nothing) return true;
@@ -337,7 +338,8 @@ bool CaseRun::time_simulation(CaseTimes& times, const Announce& announce) {
         offset += bytes.size();
     });
     if (!announce("simulation", 1)) return false;
-    if (case_.warm_up > 0) simulation.step();  // a restored simulation first queries every particle
+    // Not timed, because the first step of a restored simulation queries every particle.
+    if (case_.warm_up > 0) simulation.step();
     bool goes_on = true;
     const double seconds = time_of([&] {
         simulation.advance(case_.steps, [&] {

@@ -1,5 +1,5 @@
 /// \file
-/// A benchmark case ready to run: its mesh, its particles, and its simulation at the start of the measured steps.
+/// Preparation and timing of a benchmark case: mesh, particles, simulation, memory and references.
 #pragma once
 
 #include <cstddef>
@@ -24,32 +24,32 @@ namespace ricochet::bench {
 
 // Creation of a case's mesh, particles and simulation.
 
-/// Returns a point from which every point inside the ground is visible in a straight line; nothing if the ground has no
-/// inside.
+/// Returns the heart of a closed ground: a point that is connected with every point inside by a straight line inside.
+/// Returns std::nullopt if the ground is open.
 [[nodiscard]] std::optional<Vec3> heart_of(Ground ground);
 
-/// Creates the case's mesh, with about as many triangles as the case requests.
+/// Creates the case's mesh, with approximately Case::triangles triangles.
 [[nodiscard]] std::shared_ptr<const TriangleMesh> make_mesh(const Case& c);
 
-/// Creates the case's particles on its mesh. Particles inside keep a distance of at least their radius from it. The
-/// result does not depend on the machine or its threads.
+/// Creates the case's particles. Particles inside a closed ground are at least their radius away from the mesh. The
+/// result does not depend on the machine or its number of threads.
 [[nodiscard]] std::vector<Particle> make_particles(const Case& c, const TriangleMesh& mesh);
 
-/// Creates a setup without particles: the case's response, ballistic steps, and the case's number of steps.
+/// Creates the setup of the case's simulation without its particles.
 [[nodiscard]] SimulationSetup make_setup(const Case& c, const std::shared_ptr<const TriangleMesh>& mesh);
 
-// Inside tests for a closed mesh that has a heart: a point that sees its whole inside in straight lines.
+// Inside tests for a closed mesh with a heart, see heart_of().
 
-/// The inside of one mesh. Safe from any number of threads.
+/// Interior of one mesh. Safe from any number of threads.
 class Insides {
 public:
-    /// The mesh must be closed and star-shaped about the heart. It must outlive this object.
+    /// The mesh must be closed and star-shaped about the heart, and must outlive this object.
     Insides(const TriangleMesh& mesh, const Vec3& heart);
 
-    /// Returns true if the straight line from the heart to p hits no triangle. The decision is exact.
+    /// Returns true if the segment from the heart to p hits no triangle. The decision is exact.
     [[nodiscard]] bool contains(const Vec3& p) const;
-    /// Returns true if a ball's centre is inside and at least the radius (in m, >= 0) away from every triangle, to
-    /// rounding.
+    /// Returns true if a ball's centre is inside, and if the distance from the centre to each triangle is at least the
+    /// radius (in m, >= 0). Distances have rounding errors.
     [[nodiscard]] bool contains_ball(const Vec3& middle, double radius) const;
 
 private:
@@ -61,62 +61,62 @@ private:
 /// Returns the bytes that the process has allocated and not freed; 0 if the allocator does not report them.
 [[nodiscard]] std::uint64_t allocated_bytes();
 
-/// Returns freed memory to the system, so that memory of one case is not counted again in the next.
+/// Returns freed memory to the operating system. Otherwise the memory of one case would count again in the next case.
 void return_freed_memory();
 
 /// Memory of a case's simulation after a step.
 struct MemoryUse {
-    /// Includes data that the step keeps for the next one. Memory that Embree maps by itself for the search structures
-    /// of spheres is not included.
+    /// Includes data that a step stores for the next step. Does not include memory that Embree maps directly from the
+    /// operating system for hierarchies of spheres.
     double bytes_per_particle = 0.0;
-    double bytes_per_triangle = 0.0;  ///< includes the mesh and its search structures, without totals per triangle
+    double bytes_per_triangle = 0.0;  ///< includes the mesh and its hierarchies, but not the totals per triangle
 };
 
-/// Builds the case's simulation with and without its particles and measures its allocations.
+/// Builds the case's simulation with and without its particles, and measures the allocated memory.
 [[nodiscard]] MemoryUse measure_memory(const Case& c, const std::shared_ptr<const TriangleMesh>& mesh,
                                        const std::vector<Particle>& particles);
 
-// One case, advanced to the start of its measured steps, which can be timed repeatedly.
+// Timing of one case. Each repeat starts from the same saved state.
 
-/// Times of the measured steps and of the references, in s, one entry per repeat.
+/// Times of the measured steps and of the references, in s. Each list has one entry per repeat.
 struct CaseTimes {
     std::vector<double> simulation;
     std::vector<double> raw;
     std::vector<double> sorted;
     std::vector<double> bounces;
-    std::vector<double> naive;  ///< of the measured steps with NaiveMotion; empty if nothing moves
+    std::vector<double> naive;  ///< time of the same steps with NaiveMotion; empty if no collider moves
 };
 
-/// Function called before every piece of work. `step` counts from 1; it is 0 if the work has no steps. If it returns
-/// false, the measurement ends.
+/// Function that is called before each task and at each step. `step` counts from 1, and is 0 if the task has no steps.
+/// If the function returns false, the measurement ends.
 using Announce = std::function<bool(std::string_view doing, std::uint64_t step)>;
 
-/// Approximate number of flights for the references. They get the states of as many evenly spaced steps as this takes,
-/// at least one. Fewer: the references of small cases would be too short to be timed. More: the states of large cases
-/// would not fit into memory.
+/// Approximate number of flights that a reference processes. The flights come from the states before evenly spaced
+/// steps, at least one step. With fewer flights, the references of small cases would be too short to be timed. With
+/// more flights, the states of large cases would not fit into memory.
 inline constexpr std::uint64_t kReferenceFlights = 4'000'000;
 
 /// Results of the measured steps. They are the same in every repeat.
 struct Course {
     std::uint64_t particle_steps = 0;
     std::uint64_t contacts = 0;
-    std::uint64_t pair_impacts = 0;  ///< between spheres, resolved sequentially
-    double largest_overlap = 0.0;    ///< of two spheres, over the smaller radius, from the start on
+    std::uint64_t pair_impacts = 0;  ///< impacts between spheres that are resolved sequentially
+    double largest_overlap = 0.0;    ///< largest overlap of two spheres since the start, divided by the smaller radius
     std::uint64_t state_hash = 0;
 };
 
-/// A case with all data for its timing.
+/// Case with all data for its timing.
 class CaseRun {
 public:
     /// Creates the particles.
     CaseRun(const Case& c, std::shared_ptr<const TriangleMesh> mesh);
 
-    /// Measures memory, runs all steps once and prepares the references. Returns false if `announce` ends it.
+    /// Measures memory, runs all steps once and prepares the references. Returns false if `announce` returns false.
     [[nodiscard]] bool prepare(const Announce& announce);
 
-    /// Times the measured steps and then each reference, with the present number of threads. Returns false if
-    /// `announce` ends it; the times are then useless. Throws RunError if the steps end in another state than in
-    /// prepare().
+    /// Times the measured steps and then each reference, with the current number of threads. Returns false if
+    /// `announce` returns false; `times` is then incomplete. Throws RunError if the final state of the steps differs
+    /// from the final state in prepare().
     [[nodiscard]] bool time(CaseTimes& times, const Announce& announce);
 
     [[nodiscard]] const Case& description() const { return case_; }
@@ -126,8 +126,8 @@ public:
     [[nodiscard]] const Course& course() const { return course_; }
     /// Requires prepare().
     [[nodiscard]] const Reference& reference() const { return *reference_; }
-    /// Returns the number of particles that NaiveMotion has moved outside a closed moving ground; nothing for other
-    /// cases.
+    /// Returns the number of particles that NaiveMotion moved outside a closed moving ground. Returns std::nullopt for
+    /// other cases.
     [[nodiscard]] std::optional<std::uint64_t> naive_leaks() const { return naive_leaks_; }
 
 private:
@@ -141,11 +141,12 @@ private:
     Case case_;
     std::shared_ptr<const TriangleMesh> mesh_;
     std::vector<Particle> particles_;
-    std::vector<std::byte> start_;  ///< saved state before the last step of the warm-up
+    /// Saved state before the last step of the warm-up, or the initial state if there is no warm-up.
+    std::vector<std::byte> start_;
     MemoryUse memory_;
     Course course_;
     std::optional<Reference> reference_;
-    std::optional<NaiveMotion> naive_;  ///< set if something moves
+    std::optional<NaiveMotion> naive_;  ///< set if a collider moves
     std::vector<Flight> naive_start_;
     std::optional<std::uint64_t> naive_leaks_;
 };

@@ -12,10 +12,11 @@ namespace ricochet::bench {
 
 namespace {
 
-// Box around the cavity, whose radius is at most 1.8 m.
+// Box around the cavity. The cavity has a radius of at most 1.8 m.
 const Box3 kAroundCavity{{-1.8, -1.8, -1.8}, {1.8, 1.8, 1.8}};
 
-// Steps with impacts in some 1.5 % of the particle-steps. A finer mesh is rougher.
+// Time steps, in s, at which about 1.5 % of the particle-steps have an impact. A finer mesh is rougher, so particles
+// hit it more often.
 constexpr double kGasStep = 0.0084;
 constexpr double kGasStepOnFineMesh = 0.0069;
 
@@ -51,7 +52,7 @@ Case settle(std::string_view suite, std::string_view name, std::size_t triangles
             .steps = 200};
 }
 
-// Half a second in which every particle lands and bounces once or twice.
+// Particles fall on a terrain for half a second. In this time, each particle bounces once or twice.
 Case hail(std::string_view suite, std::string_view name, std::size_t triangles, std::size_t particles) {
     return {.suite = suite,
             .name = name,
@@ -70,7 +71,7 @@ Case hail(std::string_view suite, std::string_view name, std::size_t triangles, 
             .steps = 25};
 }
 
-// The drops move from the rim to the ground in a single step and hardly bounce.
+// Drops fall from the rim of the bowl to its surface in a single step. Their restitution is small.
 Case rain(std::string_view suite, std::string_view name, std::size_t triangles, std::size_t particles) {
     return {.suite = suite,
             .name = name,
@@ -87,7 +88,8 @@ Case rain(std::string_view suite, std::string_view name, std::size_t triangles, 
             .spread = 1.0};
 }
 
-// A step is longer than the cavity is wide (3.6 m at most), so every particle hits in every step.
+// Particles in a cavity whose paths of 4 m per step exceed its diameter (at most 3.6 m). Every particle therefore has
+// an impact in every step.
 Case pinball(std::string_view suite, std::string_view name, std::size_t triangles, std::size_t particles) {
     return {.suite = suite,
             .name = name,
@@ -102,7 +104,7 @@ Case pinball(std::string_view suite, std::string_view name, std::size_t triangle
             .steps = 2};
 }
 
-// Particles move into the edge and out again, with some pi / 0.01 bounces.
+// Particles move towards the edge of the wedge and back, with about pi / 0.01 bounces each.
 Case wedge(std::string_view suite, std::string_view name, std::size_t triangles, std::size_t particles) {
     return {.suite = suite,
             .name = name,
@@ -116,7 +118,8 @@ Case wedge(std::string_view suite, std::string_view name, std::size_t triangles,
             .steps = 1};
 }
 
-// Radii of spheres, in m: a single one, and a range of three decades. The mesh of these cases has edges of some 12 mm.
+// Radii of spheres, in m: a single radius, and the limits of a range of three decades. The mesh of these cases has
+// edges of about 12 mm.
 constexpr std::size_t kTrianglesForSpheres = 320'000;
 constexpr double kRadius = 0.002;
 constexpr double kLeastRadius = 2e-5;
@@ -130,7 +133,7 @@ Case with_radii(Case c, std::string_view base, double least, double largest) {
     return c;
 }
 
-// A gas that falls, so that every response has particles to support.
+// Gas with gravity, so that every response has to support particles.
 Case answered_by(ResponseKind response) {
     Case c = gas("response", name_of(response), 20'000, 100'000, kGasStep);
     c.gravity = 9.81;
@@ -140,7 +143,8 @@ Case answered_by(ResponseKind response) {
     return c;
 }
 
-// Returns a group of two cases, both without look-ahead: one without motion and one with motion.
+// Returns a group of two cases without look-ahead. In the first case no collider moves, and in the second case
+// colliders move.
 std::vector<Case> beside_rest(Case c, std::string_view at_rest, std::string_view moving, Moves moves) {
     c.against = Against::at_rest;
     c.base = c.name = at_rest;
@@ -161,8 +165,9 @@ using Cases = std::vector<Case>;
 
 void append(Cases& to, const Cases& cases) { to.insert(to.end(), cases.begin(), cases.end()); }
 
-// At each size, the step gives impacts in some 1.5 % of the particle-steps, as measured with 60 000 particles. The rate
-// of impacts is proportional to surface over volume, which grows until the mesh resolves all of the cavity's roughness.
+// Cases with different numbers of triangles. In each case, about 1.5 % of the particle-steps have an impact (measured
+// with 60 000 particles). The rate of impacts is proportional to the ratio of the cavity's surface to its volume. This
+// ratio grows with the number of triangles until the mesh resolves the whole roughness.
 Cases size_cases() {
     constexpr std::size_t kMany = 1'000'000;
     constexpr double kStepOnFinestMeshes = 0.0066;
@@ -177,7 +182,8 @@ Cases size_cases() {
             gas("size", "size-10M", 10'000'000, kMany, kStepOnFinestMeshes)};
 }
 
-// Few particles take many steps, so that the timed work lasts some tenths of a second.
+// Cases with different numbers of particles. Cases with few particles have many steps, so that their timed work lasts
+// some tenths of a second.
 Cases count_cases() {
     const auto count = [](std::string_view name, std::size_t particles) {
         return gas("count", name, 1'300'000, particles, kGasStepOnFineMesh);
@@ -209,7 +215,8 @@ Cases response_cases() {
     return cases;
 }
 
-// Three motions: flights of 0.7 m per step with impacts in half of the particle-steps, a gas, and a gas among rocks.
+// Groups of three kinds: flights of 0.7 m per step with an impact in half of the particle-steps, a gas, and a gas among
+// rocks.
 Cases moving_cases() {
     constexpr std::size_t kTriangles = 100'000;
     constexpr std::size_t kParticles = 50'000;
@@ -241,10 +248,10 @@ std::vector<Case> beside_apart(Case c, std::string_view apart, std::string_view 
     return {c, other};
 }
 
-// A gas of packing 0.01 in which a step is a flight of one radius.
+// Gas of spheres with a volume fraction of 0.01. Each sphere moves by one radius per step.
 Case dilute_spheres() {
     constexpr std::size_t kMany = 20'000;
-    constexpr double kRadiusOfGas = 0.0079;  // (0.01 / 20 000)^(1/3) of the cavity's radius of 1 m
+    constexpr double kRadiusOfGas = 0.0079;  // (0.01 / 20 000)^(1/3) times the cavity's radius of 1 m
     Case c = with_steps(gas("pairs", "", 20'000, kMany, kRadiusOfGas), 4, 60);
     c.spread = 0.0;
     c.start = Start::lattice;
@@ -253,8 +260,8 @@ Case dilute_spheres() {
     return c;
 }
 
-// The scene of docs/particle-contacts.md for the comparison with other programs. Spheres of 5 mm, plus or minus a
-// fifth, fall as a loose cloud for one second.
+// Scene for the comparison with other programs in docs/particle-contacts.md. A loose cloud of spheres with radii of 5
+// mm plus or minus 20 % falls for one second.
 Case filling_spheres(std::size_t particles) {
     return {.suite = "pairs",
             .name = "filling",
@@ -275,7 +282,7 @@ Case filling_spheres(std::size_t particles) {
             .pitch = 0.0132};
 }
 
-// The cavity is a quarter full and turns at 25 degrees per second.
+// Spheres fill a quarter of the cavity, which rotates at 25 degrees per second.
 Case tumbling_spheres() {
     return {.suite = "pairs",
             .name = "drum",
@@ -322,7 +329,7 @@ Cases make_all_cases() {
     };
     append(cases, size_cases());
     append(cases, count_cases());
-    // Cases with long steps have fewer particles, because one thread has to run them too.
+    // Cases with expensive steps have fewer particles, because they also run with one thread.
     append(cases, {gas("threads", "gas", 1'300'000, 1'000'000, kGasStepOnFineMesh),
                    settle("threads", "settle", 1'300'000, 200'000), pinball("threads", "pinball", 1'300'000, 200'000)});
     append(cases, radius_cases());

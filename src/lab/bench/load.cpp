@@ -29,7 +29,7 @@ constexpr std::size_t kFew = 20'000;
 constexpr std::size_t kMany = 1'000'000;
 constexpr std::size_t kMost = 5'000'000;
 
-// The library's writer supports PLY in its binary form only.
+// The mesh writer of the library writes only binary PLY files.
 void write_ascii_ply(const TriangleMesh& mesh, const std::filesystem::path& path) {
     std::string text = fmt::format(
         "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
@@ -104,7 +104,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A temporary folder. The destructor removes it with its contents.
+/// Temporary folder. The destructor removes the folder and its contents.
 class ScratchFolder {
 public:
     ScratchFolder() {
@@ -127,7 +127,7 @@ private:
     fs::path path_;
 };
 
-/// Measures one file.
+/// Measurement of one file.
 class LoadMeasurer {
 public:
     LoadMeasurer(const LoadCase& c, const MeasurementPlan& plan, const Hook& hook)

@@ -10,7 +10,7 @@
 namespace ricochet::bench {
 namespace {
 
-/// Measures one group.
+/// Measurement of one group of cases.
 class Measurer {
 public:
     Measurer(std::span<const Case> group, const MeasurementPlan& plan, const Hook& hook)
@@ -43,8 +43,9 @@ private:
     const Hook& hook_;
     Progress progress_;
     std::list<CaseRun> runs_;
-    std::vector<std::vector<CaseTimes>> times_;  ///< by case and number of threads
-    std::vector<int> threads_;                   ///< actual numbers; a 0 in the plan is resolved
+    std::vector<std::vector<CaseTimes>> times_;  ///< indexed by case and number of threads
+    /// Numbers of threads of the plan, with 0 replaced by the number of all threads.
+    std::vector<int> threads_;
 };
 
 bool Measurer::prepare() {
@@ -80,8 +81,8 @@ bool Measurer::repeat_all() {
     return true;
 }
 
-/// Returns the number of units of the first kind that are done in the time of one reference unit. It is the median over
-/// the repeats.
+/// Returns the rate count / seconds, divided by the rate reference_count / reference_seconds. It is the median over the
+/// repeats.
 double ratio_of(std::uint64_t count, const std::vector<double>& seconds, std::uint64_t reference_count,
                 const std::vector<double>& reference_seconds) {
     return median_ratio(reference_seconds, seconds) * static_cast<double>(count) / static_cast<double>(reference_count);
@@ -129,7 +130,7 @@ Row row_of(const CaseRun& run, const CaseTimes& times) {
     return row;
 }
 
-/// Returns the index of the measurement with one thread.
+/// Returns the index of the measurement with one thread, or std::nullopt if there is none.
 std::optional<std::size_t> Measurer::single_thread() const {
     for (std::size_t k = 0; k < threads_.size(); ++k) {
         if (threads_[k] == 1) return k;
@@ -151,7 +152,7 @@ std::vector<Row> Measurer::rows() const {
                 row.speedup = median_ratio(times[*single].simulation, times[k].simulation);
                 row.speedup_raw = median_ratio(times[*single].raw, times[k].raw);
             }
-            // Number of particle-steps of the base in the time of one particle-step of the case.
+            // Time of a particle-step of the case, relative to the base case.
             const double cost = ratio_of(base.course().particle_steps, times_.front()[k].simulation,
                                          run.course().particle_steps, times[k].simulation);
             if (run.description().against == Against::points) row.ratio_points = cost;

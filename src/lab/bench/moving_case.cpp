@@ -16,7 +16,7 @@ namespace ricochet::bench {
 namespace {
 
 constexpr std::size_t kTrianglesOfARock = 1000;
-constexpr double kLattice = 2.0;  // in m
+constexpr double kLattice = 2.0;  // distance of adjacent rocks, in m
 constexpr double kMovingCaseCoarseEdge = 0.25;
 constexpr double kDegreesAStep = 1.0;
 constexpr double kDegreesATumblingStep = 0.05;
@@ -31,7 +31,7 @@ TriangleMesh make_one_rock() {
 
 std::size_t count_of_rocks(std::size_t triangles) { return std::max<std::size_t>(1, triangles / kTrianglesOfARock); }
 
-/// Returns the positions of `count` rocks: lattice points in nearly a cube, about the origin.
+/// Returns the positions of `count` rocks. They fill a cubic lattice around the origin.
 std::vector<Vec3> places_of_rocks(std::size_t count) {
     std::size_t side = 1;
     while (side * side * side < count) ++side;

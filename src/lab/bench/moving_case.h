@@ -1,5 +1,5 @@
 /// \file
-/// The colliders of a case and their motion.
+/// Colliders of a case, and their motion.
 #pragma once
 
 #include <cstddef>
@@ -14,18 +14,18 @@
 
 namespace ricochet::bench {
 
-/// Creates rocks on their lattice, about the origin, as one mesh of about the given number of triangles.
+/// Creates rocks on a lattice around the origin, as one mesh with about the given number of triangles.
 [[nodiscard]] TriangleMesh make_rocks(std::size_t triangles);
 
-/// Returns the case's colliders. Moving ones belong to frames of frames_of().
+/// Returns the case's colliders. Moving colliders refer to the frames of frames_of() by name.
 [[nodiscard]] std::vector<ColliderDescription> colliders_of(const Case& c,
                                                             const std::shared_ptr<const TriangleMesh>& mesh);
 
-/// Returns the frames of the moving colliders; null if nothing moves.
+/// Returns the frames of the moving colliders, or null if no collider moves as a rigid body.
 [[nodiscard]] std::shared_ptr<const FrameTree> frames_of(const Case& c);
 
-/// Converts flights to the coordinates of the case's ground at a time, in s: to its frame, and divided by its size.
-/// Returns them unchanged if the ground does not move or has several parts.
+/// Converts flights to the coordinates of the case's mesh at a time, in s. A moving ground has a frame, and a deforming
+/// ground has a scale factor. Flights are returned unchanged if the ground does not move or consists of rocks.
 [[nodiscard]] std::vector<Flight> seen_from_ground(const Case& c, std::vector<Flight> flights, double time);
 
 }  // namespace ricochet::bench

@@ -19,9 +19,9 @@ constexpr std::size_t kNaiveMotionBlock = 1024;
 }  // namespace
 
 struct NaiveMotion::Impl {
-    /// A collider. Its index equals the number of its Embree geometry.
+    /// Collider. Its index in `parts` is the number of its Embree geometry.
     struct Part {
-        std::vector<Vec3> vertices;  ///< in its frame
+        std::vector<Vec3> vertices;  ///< in the coordinates of its frame
         std::shared_ptr<const TriangleMesh> mesh;
         std::optional<std::size_t> frame;
         RTCGeometry geometry = nullptr;  ///< owned by the scene

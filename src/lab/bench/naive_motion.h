@@ -1,6 +1,6 @@
 /// \file
-/// The usual method for moving colliders: all triangles at their positions at the end of a step, and one ray per
-/// particle. It runs no code of the sweep.
+/// Usual method for moving colliders, as a reference for the benchmark. It uses Embree without any code of the
+/// library's sweep.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@
 
 namespace ricochet::bench {
 
-/// Moving colliders with the usual method. At every step, their triangles are moved to their positions at its end, and
-/// Embree refits its hierarchy. Each particle traces one ray to the end of its path. If the ray hits a surface, the
-/// particle bounces relative to that surface and loses the rest of its step. A surface that moves over a particle
-/// between two steps is missed.
+/// Simulation of moving colliders with the usual method. In each step, the triangles move to their positions at the end
+/// of the step, and Embree refits its hierarchy. Each particle traces one ray along its path. If the ray hits a
+/// surface, the particle is reflected relative to the surface's velocity and loses the rest of its step. Collisions are
+/// missed if a surface moves over a particle between two steps.
 class NaiveMotion {
 public:
     /// All colliders must be meshes. Throws RunError if memory is insufficient.
@@ -27,12 +27,12 @@ public:
     NaiveMotion& operator=(NaiveMotion&&) noexcept;
 
     struct Steps {
-        double begin = 0.0;  ///< in s
+        double begin = 0.0;  ///< time of the start of the first step, in s
         double time_step = 0.0;
         std::uint64_t count = 0;
         double restitution = 1.0;
     };
-    /// Moves all flights. Returns the number of bounces.
+    /// Moves all flights by the given steps. Returns the number of bounces.
     [[nodiscard]] std::uint64_t run(std::span<Flight> flights, const Steps& steps);
 
 private:

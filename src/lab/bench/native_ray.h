@@ -1,5 +1,6 @@
 /// \file
-/// Private to the references: one ray in Embree's format. Only the .cpp files that trace rays include this file.
+/// Private to the references: conversion of a ray to Embree's format. Only .cpp files that trace rays include this
+/// file.
 #pragma once
 
 #include <array>
@@ -10,9 +11,9 @@
 
 namespace ricochet::bench {
 
-/// Distance of the next ray's start from the surface, relative to the mesh's largest coordinate. It is some ten
-/// roundings of a float, as renderers choose it. Smaller: rays hit the triangle that they leave. Larger: rays start
-/// behind the next wall.
+/// Distance from a surface at which a ray starts after a bounce, relative to the largest coordinate of the mesh. The
+/// distance is about ten rounding units of a float, as in renderers. With a smaller distance, rays hit the triangle
+/// that they leave. With a larger distance, rays can start behind a nearby wall.
 inline constexpr double kRayOffset = 1e-6;
 
 [[nodiscard]] inline RTCRayHit ray_of(const RaySegment& segment) {

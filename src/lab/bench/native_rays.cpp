@@ -10,15 +10,15 @@
 namespace ricochet::bench {
 namespace {
 
-// Rays per unit of parallel work. It is a multiple of the packet size.
+// Rays per unit of parallel work. The number is a multiple of the packet size.
 constexpr std::size_t kBlock = 1024;
 constexpr std::size_t kPacket = 16;
 
-// Default limit of the simulation.
+// Largest number of bounces of a flight. It equals the default limit of the simulation.
 constexpr int kMostBounces = 1000;
 
-/// Traces sixteen rays at once. A ray is traced if its entry of `valid` is -1 and skipped if it is 0. `valid` must be
-/// aligned to 64 bytes.
+/// Traces sixteen rays at once. A ray is traced if its entry of `valid` is -1, and skipped if its entry is 0. `valid`
+/// must be aligned to 64 bytes.
 void intersect16(const int* valid, RTCScene scene, embree::QueryContext& context, RTCRayHit16& ray_hits) {
 #if RTC_VERSION_MAJOR >= 4
     RTCIntersectArguments arguments;
@@ -30,10 +30,10 @@ void intersect16(const int* valid, RTCScene scene, embree::QueryContext& context
 #endif
 }
 
-/// Up to sixteen rays, with a mask of the lanes in use.
+/// Up to sixteen rays, and a mask of the lanes that contain a ray.
 struct Packet {
     alignas(64) std::array<int, kPacket> valid{};
-    RTCRayHit16 rays{};  // initialised, because Embree also reads unused lanes
+    RTCRayHit16 rays{};  // initialized, because Embree also reads unused lanes
 
     void set(std::size_t lane, const RaySegment& segment) {
         valid[lane] = -1;
@@ -58,7 +58,7 @@ struct Packet {
 struct NativeRays::Impl {
     std::vector<Vec3> vertices;
     std::vector<Triangle> triangles;
-    double offset = 0.0;  ///< in m
+    double offset = 0.0;  ///< distance from the surface at which a ray starts after a bounce, in m
     embree::Device device;
     embree::Scene scene;
 
@@ -66,7 +66,7 @@ struct NativeRays::Impl {
     [[nodiscard]] std::uint32_t first_hit(const RaySegment& segment) const;
     void trace_packet(std::span<const RaySegment> segments, std::span<std::uint32_t> hits) const;
     [[nodiscard]] std::uint64_t fly(Flight flight, const BounceRules& rules, Vec3& end) const;
-    /// Moves the flight to the triangle and reflects its velocity. `left` is the remaining time, in s.
+    /// Moves the flight to the triangle's plane, reduces `left` (the remaining time, in s), and reflects the velocity.
     void reflect(Flight& flight, double& left, double restitution, const Triangle& triangle) const;
 };
 

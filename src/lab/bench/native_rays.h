@@ -1,6 +1,6 @@
 /// \file
-/// Embree alone, as the reference of the benchmark's ratios: native float triangles, robust traversal, no certificate.
-/// It runs no code of the sweep.
+/// Embree alone, as the reference of the benchmark's ratios. It uses Embree's own triangles in single precision with
+/// robust traversal. It has no certificates and runs no code of the library's sweep.
 #pragma once
 
 #include <array>
@@ -16,41 +16,42 @@ namespace ricochet::bench {
 /// Triangle number of a ray without a hit.
 inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFU;
 
-/// A ray in Embree's format.
+/// Ray in Embree's format.
 struct RaySegment {
     std::array<float, 3> from;   ///< in m
-    std::array<float, 3> along;  ///< offset to the other end, in m
+    std::array<float, 3> along;  ///< offset from `from` to the other end, in m
 };
 
-/// A particle that moves in a straight line.
+/// Particle that moves in a straight line.
 struct Flight {
     Vec3 position;  ///< in m
     Vec3 velocity;  ///< in m/s
 };
 
-/// A mesh in Embree's own form. Safe from any number of threads; every loop uses all of them.
+/// Mesh as an Embree geometry. Safe from any number of threads. Each function processes rays with all threads.
 class NativeRays {
 public:
-    /// The mesh may be destroyed afterwards. Throws RunError if memory is insufficient.
+    /// Copies the mesh. Throws RunError if memory is insufficient.
     explicit NativeRays(const TriangleMesh& mesh);
     ~NativeRays();
     NativeRays(NativeRays&&) noexcept;
     NativeRays& operator=(NativeRays&&) noexcept;
 
-    /// Writes the first triangle that each segment hits, or kNoTriangle. It traces one ray at a time, in the given
-    /// order.
+    /// Writes the first triangle that each segment hits, or kNoTriangle. Each thread traces one ray at a time.
     void trace(std::span<const RaySegment> segments, std::span<std::uint32_t> triangles) const;
-    /// Writes the first triangle that each segment hits, or kNoTriangle. It traces packets of sixteen consecutive rays.
+    /// Writes the first triangle that each segment hits, or kNoTriangle. Each thread traces packets of sixteen
+    /// consecutive rays.
     void trace_packets(std::span<const RaySegment> segments, std::span<std::uint32_t> triangles) const;
 
     /// Rules for bounces of flights.
     struct BounceRules {
         double duration = 0.0;     ///< in s
-        double restitution = 1.0;  ///< of every surface
+        double restitution = 1.0;  ///< restitution of every surface
     };
-    /// Moves every particle in straight lines from bounce to bounce. Hits are refined in double precision on the plane
-    /// of the hit triangle. The next ray starts at a small offset along the normal. Writes the end positions and
-    /// returns the number of bounces. Particles may pass through walls.
+    /// Moves every particle in straight lines from bounce to bounce. Embree finds the hit triangle, and the hit point
+    /// is computed in double precision on the triangle's plane. The next ray starts at a small offset along the normal.
+    /// Writes the end positions and returns the number of bounces. Particles can pass through walls because of rounding
+    /// errors and the offset.
     [[nodiscard]] std::uint64_t bounce(std::span<const Flight> flights, const BounceRules& rules,
                                        std::span<Vec3> ends) const;
 

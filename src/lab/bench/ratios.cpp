@@ -26,7 +26,7 @@ const CaseRatios* find(const SuiteRatios& ratios, const std::string& name) {
 
 Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
-/// Error of an invalid file of ratios.
+/// Error for a file that is not a valid file of ratios.
 class WrongFile : public InputError {
 public:
     WrongFile(const std::filesystem::path& file, const std::string& what)

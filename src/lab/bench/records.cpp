@@ -37,8 +37,8 @@ std::string cpu_model() {
     return "unknown";
 }
 
-/// Returns the words of a text in small letters and digits. Text in brackets and after an at sign (the clock) is
-/// skipped.
+/// Returns the words of a text in lower case. Text in parentheses is skipped, and also text after an at sign (the clock
+/// frequency).
 std::vector<std::string> words_of(std::string_view text) {
     std::vector<std::string> words(1);
     int depth = 0;
@@ -251,7 +251,7 @@ std::vector<std::string> cells_of(const Row& row) {
             fmt::format("{:.0f}", row.bytes_per_triangle)};
 }
 
-/// A column that only some suites use.
+/// Column that applies to some suites only.
 struct ExtraColumn {
     const char* header;
     std::optional<double> (*value)(const Row&);

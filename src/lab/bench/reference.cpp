@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t kCells = std::uint64_t{1} << 21;
 
-/// Returns the low 21 bits with two zero bits between neighbours.
+/// Returns the low 21 bits of x, with two zero bits inserted between adjacent bits.
 std::uint64_t spread_bits(std::uint64_t x) {
     x = (x | x << 32) & 0x001F00000000FFFFULL;
     x = (x | x << 16) & 0x001F0000FF0000FFULL;

@@ -1,5 +1,5 @@
 /// \file
-/// References of a case: Embree alone on the same segments, in arbitrary and in spatial order.
+/// References of a case: work of Embree alone on the segments of the simulation.
 #pragma once
 
 #include <cstddef>
@@ -14,35 +14,37 @@
 
 namespace ricochet::bench {
 
-/// Returns the indices of the points along the Z-curve through the cube of their box, with 2^21 cells per axis. Points
-/// in equal cells keep the order of the list. Points must be finite. Source: G. M. Morton, "A Computer Oriented
-/// Geodetic Data Base", IBM, 1966.
+/// Returns the indices of the points in the order of a Z-curve. The curve fills a cube around the points, with 2^21
+/// cells per axis. Points in the same cell keep their order. Points must be finite. Source: G. M. Morton, "A Computer
+/// Oriented Geodetic Data Base", IBM, 1966.
 [[nodiscard]] std::vector<std::uint32_t> morton_order(std::span<const Vec3> points);
 
-// The work of Embree alone on a case's segments, ready to be timed.
+// Work of Embree alone on a case's segments, prepared for timing.
 
-/// Rays and flights, in arbitrary and in spatial order. Preparation is not part of the timed work: rays are already in
-/// single precision and sorted.
+/// Rays and flights, in arbitrary and in spatial order. The constructor converts the rays to single precision and sorts
+/// them, so this work is not timed.
 class Reference {
 public:
-    /// `states` are the flights of some states of the simulation, in the arbitrary order of its particles.
+    /// `states` has the flights of some states of the simulation. The flights of a state are in the arbitrary order of
+    /// its particles.
     Reference(const TriangleMesh& mesh, const std::vector<std::vector<Flight>>& states,
               const NativeRays::BounceRules& rules);
 
-    /// Traces one ray per flight, one at a time, in arbitrary order.
+    /// Traces one ray per flight, one ray at a time, in arbitrary order.
     void trace() { rays_.trace(segments_, hits_); }
-    /// Traces the same rays in packets of sixteen. The rays of each state are in spatial order.
+    /// Traces the same rays in packets of sixteen, with the rays of each state in spatial order.
     void trace_sorted() { rays_.trace_packets(sorted_segments_, hits_); }
     /// Runs the usual bounce loop, in arbitrary order.
     void bounce() { bounces_ = rays_.bounce(flights_, rules_, ends_); }
 
-    /// Runs the bounce loop and counts the flights that end outside a closed mesh with the given heart.
+    /// Runs the bounce loop and counts the flights that end outside a closed mesh. `heart` is the heart of the mesh,
+    /// see heart_of().
     void count_leaks(const TriangleMesh& mesh, const Vec3& heart);
 
     [[nodiscard]] std::size_t rays() const { return flights_.size(); }
-    /// Returns the count of the last bounce().
+    /// Returns the number of bounces of the last call of bounce().
     [[nodiscard]] std::uint64_t bounces() const { return bounces_; }
-    /// Returns the count of count_leaks(); nothing before its first call.
+    /// Returns the number of flights that count_leaks() counted, or std::nullopt before its first call.
     [[nodiscard]] std::optional<std::uint64_t> leaks() const { return leaks_; }
 
 private:

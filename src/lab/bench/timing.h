@@ -1,5 +1,5 @@
 /// \file
-/// Times of pieces of work, and statistics of several times.
+/// Timing of functions, and statistics of times.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace ricochet::bench {
 
-/// Runs the work and returns its duration, in s.
+/// Calls `work` and returns the duration of the call, in s.
 template <class Work>
 [[nodiscard]] double time_of(const Work& work) {
     const auto start = std::chrono::steady_clock::now();
@@ -17,15 +17,15 @@ template <class Work>
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Returns the middle value, or the mean of the middle two. Requires at least one value.
+/// Returns the middle value, or the mean of the two middle values if their number is even. Requires at least one value.
 [[nodiscard]] inline double median(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     const std::size_t half = values.size() / 2;
     return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-/// Returns the median of numerators[i] / denominators[i]. The ratio of each repeat cancels noise that slows both down.
-/// Both lists must have the same length.
+/// Returns the median of numerators[i] / denominators[i]. Noise that slows both times of a repeat cancels in their
+/// ratio. Both lists must have the same length.
 [[nodiscard]] inline double median_ratio(const std::vector<double>& numerators,
                                          const std::vector<double>& denominators) {
     std::vector<double> ratios;

@@ -1,5 +1,5 @@
 /// \file
-/// Runs one scene many times. A simulation consumes its setup, so a comparison needs a copy for every run.
+/// Runs one scene many times. A simulation takes ownership of its setup, so every run needs a copy.
 #include "lab/compare/comparison.h"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 
 namespace ricochet {
 
-/// Creates setups that share only constant data (forces, meshes).
+/// Factory of setups that share only constant data (forces, meshes).
 class SetupCopies {
 public:
     explicit SetupCopies(SimulationSetup setup);
@@ -32,7 +32,7 @@ private:
 
 namespace {
 
-/// A force shared by several simulations. Forces are pure functions.
+/// Force that several simulations share. Sharing is safe, because forces are pure functions.
 class SharedForce final : public Force {
 public:
     explicit SharedForce(std::shared_ptr<const Force> force) : force_(std::move(force)) {}
@@ -57,7 +57,8 @@ SetupCopies::SetupCopies(SimulationSetup setup) : setup_(std::move(setup)) {
     setup_.forces.clear();
 }
 
-// Copies the members one by one, in their order. A new member does not compile until it is copied here.
+// Copies the members one by one, in order of declaration. If SimulationSetup gets a new member, this function does not
+// compile until it copies the member.
 SimulationSetup SetupCopies::make(const SimulationOptions& options) const {
     const auto& [own_options, acceleration, no_forces, materials, colliders, frames, bodies, emitters, particles,
                  springs, spring_faces, particles_forces, solver, bounds, attributes, reference_camera, heat, counters,
@@ -76,8 +77,8 @@ namespace {
 
 constexpr ResponseChoice kExact{ResponseKind::exact, false};
 
-/// Executes one run of a comparison. If it diverges, names the run in the error. A timed run is the same as the
-/// measured one, so it needs no name.
+/// Executes a measured run of a comparison. If the run diverges, the error names it. Timed runs do not need this
+/// function, because a run that diverges has already failed as a measured run.
 template <class Run>
 auto named(std::string_view part, const ResponseChoice& response, double time_step, const Run& run) {
     try {
@@ -90,20 +91,20 @@ auto named(std::string_view part, const ResponseChoice& response, double time_st
     }
 }
 
-/// Returns the end of an error message: the --responses option without the responses that a scene refuses.
+/// Returns the end of an error message that suggests the option --responses with the accepted responses.
 std::string without_refused(const std::vector<ResponseChoice>& accepted) {
     std::string names;
     for (const ResponseChoice& choice : accepted) names += (names.empty() ? "" : ",") + name_of(choice);
     return fmt::format("or leave it out (--responses {})", names.empty() ? name_of(kExact) : names);
 }
 
-/// Creates a simulation of each response at the step, in s, without running it. Throws InputError for the first invalid
-/// one.
+/// Creates a simulation of each response at the time step, in s, without running it. Throws InputError for the first
+/// response that the scene does not accept.
 void require_runs(const SetupCopies& copies, const std::vector<ResponseChoice>& responses, double time_step) {
     const auto make = [&](const ResponseChoice& response) {
         const Simulation simulation(copies.make(options_for(copies.options(), response, time_step)));
     };
-    make(kExact);  // an error of the exact response does not depend on the rows
+    make(kExact);  // an error here is an error of the scene, not of a row
     std::vector<ResponseChoice> accepted;
     std::string refusal;
     for (const ResponseChoice& response : responses) {
@@ -119,7 +120,7 @@ void require_runs(const SetupCopies& copies, const std::vector<ResponseChoice>& 
     if (!refusal.empty()) throw InputError(fmt::format("{}; {}", refusal, without_refused(accepted)));
 }
 
-/// Runs a plan.
+/// Runner of a plan.
 class Comparer {
 public:
     Comparer(SimulationSetup setup, const ComparisonPlan& plan, const ComparisonHook& hook)
@@ -154,7 +155,7 @@ private:
         return copies_.make(options_for(copies_.options(), response, time_step));
     }
 
-    /// Returns the hook of the next run. It passes the progress to the comparison's hook.
+    /// Returns the hook of the next run, which passes the progress to the hook of the comparison.
     StepHook next_run(const ResponseChoice& response, double time_step, std::uint32_t repeat) {
         ++progress_.run;
         progress_.response = name_of(response);

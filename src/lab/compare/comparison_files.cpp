@@ -19,8 +19,8 @@ namespace {
 
 using Row = ComparisonRow;
 
-// A column whose value is an expression of the row. `all` is the comparison. This is a macro, because forty lambdas
-// would repeat the same types forty times.
+// Defines a column. `value` is an expression of `row` and of the comparison `all`. This is a macro, because lambda
+// expressions would repeat the same types forty times.
 #define RICOCHET_COLUMN(name, value)                                                                          \
     ComparisonColumn {                                                                                        \
         name, []([[maybe_unused]] const Row& row, [[maybe_unused]] const Comparison& all) -> ComparisonCell { \
@@ -170,7 +170,7 @@ Json row_json(const ComparisonRow& row, const Comparison& comparison) {
     Json json;
     for (const ComparisonColumn& column : comparison_columns())
         json[column.name] = json_of(column.cell(row, comparison));
-    json["warnings"] = row.figures.warnings;  // as text
+    json["warnings"] = row.figures.warnings;  // the texts replace the number of warnings
     json["cost_seconds_each"] = row.cost.seconds_each;
     return json;
 }
@@ -207,14 +207,14 @@ std::string comparison_json(const Comparison& comparison, const ComparisonSource
     json["settings"] = settings_json(comparison, source);
     json["reference"] = reference_json(comparison);
     json["rows"] = Json::array();
-    json["base"] = Json::array();  // exact, if it was not requested
+    json["base"] = Json::array();  // rows of exact, if exact was not requested
     for (const ComparisonRow& row : comparison.rows) {
         json[row.listed ? "rows" : "base"].push_back(row_json(row, comparison));
     }
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-// No cell contains a comma, a quote or a line break, so none needs quotes.
+// Cells need no quotes, because they contain no commas, quotes or line breaks.
 std::string comparison_csv(const Comparison& comparison) {
     std::string text = header(',') + "\r\n";
     for (const ComparisonRow* row : comparison.listed_rows()) text += line_of(*row, comparison, ',', "") + "\r\n";

@@ -12,12 +12,12 @@
 namespace ricochet {
 namespace {
 
-/// A picture whose horizontal axis is the time step.
+/// Picture whose horizontal axis is the time step.
 struct StepPlot {
     const char* file;
     const char* title;
-    const char* label;   // of the vertical axis
-    const char* column;  // values to draw
+    const char* label;   // label of the vertical axis
+    const char* column;  // name of the column with the values
     bool logarithmic;
 };
 
@@ -34,8 +34,8 @@ constexpr std::array kStepPlots{
 constexpr std::size_t kMostTics = 8;
 
 struct Values {
-    std::vector<double> positive;  // values of all responses
-    bool any = false;              // true: there is at least one number
+    std::vector<double> positive;  // values above 0
+    bool any = false;              // true: at least one value is finite
 };
 
 double value_of(const ComparisonRow& row, const Comparison& comparison, const char* column) {
@@ -54,7 +54,7 @@ std::string script_start(const Comparison& comparison) {
            gnuplot_line_styles(comparison.plan.responses.size());
 }
 
-/// Returns the axis of time steps. If they are few, it has a tick at each step.
+/// Returns commands for the axis of time steps. If there are at most kMostTics time steps, each step has a tick.
 std::string step_axis(const std::vector<double>& steps) {
     constexpr double kMargin = 1.3;
     std::string text = fmt::format("set xlabel 'time step [s]'\nset logscale x\nset xrange [{:.6g}:{:.6g}]\n",
@@ -65,8 +65,8 @@ std::string step_axis(const std::vector<double>& steps) {
     return text + "set xtics (" + tics + ")\n";
 }
 
-/// Returns an axis of whole decades around the values, so that every range has labels. If no value is above 0, it is a
-/// linear axis from 0.
+/// Returns commands for the axis of values. A logarithmic axis covers whole decades, so that it has labels for any
+/// values. If no value is above 0, the axis is linear.
 std::string value_axis(const Values& values, bool logarithmic) {
     if (values.positive.empty()) return "unset logscale y\nset yrange [-0.05:1]\n";
     const auto [least, most] = std::minmax_element(values.positive.begin(), values.positive.end());
@@ -76,7 +76,8 @@ std::string value_axis(const Values& values, bool logarithmic) {
     return fmt::format("set logscale y\nset yrange [1e{:.0f}:1e{:.0f}]\n", lower, upper);
 }
 
-/// Returns the line of one response. If it has no points to draw, the key shows its name with the reason.
+/// Returns the plot command for the curve of one response. If the curve has no points, the key shows the response's
+/// name with the reason.
 std::string curve(const Comparison& comparison, std::size_t index, const StepPlot& plot, bool logarithmic) {
     Values values;
     const std::string name = name_of(comparison.plan.responses[index]);

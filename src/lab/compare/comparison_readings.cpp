@@ -25,7 +25,7 @@ std::string joined(const std::vector<std::string>& parts) {
     return text;
 }
 
-/// Returns text with one part per response.
+/// Returns a text with one part per response, separated by semicolons.
 std::string for_each_response(const Comparison& comparison, const std::function<std::string(const Rows&)>& part_of) {
     std::vector<std::string> parts;
     for (const ResponseChoice& response : comparison.plan.responses) {
@@ -34,7 +34,7 @@ std::string for_each_response(const Comparison& comparison, const std::function<
     return joined(parts);
 }
 
-/// Returns text with one part per response, at the step that is shown over time.
+/// Returns a text with one part per response. Each part describes the row at ComparisonPlan::shown_step.
 std::string at_shown_step(const Comparison& comparison,
                           const std::function<std::string(const ComparisonRow&)>& part_of) {
     return for_each_response(comparison, [&](const Rows& rows) {
@@ -53,8 +53,8 @@ std::string cost_reading(const Comparison& comparison) {
                        }));
 }
 
-/// Returns the values at the longest and the shortest step. If both are above 0, adds the power of the step that
-/// connects them.
+/// Returns the values at the longest and the shortest time step as text. If both are above 0, adds the exponent p for
+/// which step^p is proportional to the values.
 std::string trend(const Rows& rows, Number number, const char* unit) {
     const double from = number(*rows.front());
     const double to = number(*rows.back());

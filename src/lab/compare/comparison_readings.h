@@ -1,5 +1,5 @@
 /// \file
-/// Sentences that describe the pictures of a comparison, made from the numbers.
+/// Generated sentences that describe the pictures of a comparison.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@ namespace ricochet {
 /// Returns a number with three digits, or `-` if it is not finite.
 [[nodiscard]] std::string short_text(double number);
 
-/// Returns one or two sentences that describe a picture, which is one of kComparisonPictures. Throws
-/// std::invalid_argument for others.
+/// Returns one or two sentences that describe a picture. `picture` must be one of kComparisonPictures, otherwise
+/// std::invalid_argument is thrown.
 [[nodiscard]] std::string reading_of(const std::string& picture, const Comparison& comparison);
 
 }  // namespace ricochet

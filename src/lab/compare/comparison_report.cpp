@@ -17,12 +17,12 @@ namespace {
 
 using Table = std::vector<std::vector<std::string>>;
 
-/// A block of the report, independent of the output format.
+/// Part of the report, independent of the output format.
 struct Block {
     enum class Kind { heading, paragraph, list, table, picture };
     Kind kind = Kind::paragraph;
-    std::string text;  // name of the file, for a picture
-    Table cells;       // one line each, for a list
+    std::string text;  // for a picture: name of its file
+    Table cells;       // for a list: one row per line, with one cell
 };
 
 Block heading(std::string text) { return {Block::Kind::heading, std::move(text), {}}; }
@@ -76,7 +76,7 @@ std::vector<std::string> what_was_run(const Comparison& comparison, const Compar
     return lines;
 }
 
-/// Returns the table of the counts behind the first table.
+/// Returns the table of detailed counts, which supplements the table of results.
 Table details(const Comparison& comparison) {
     Table table{{"response", "step (s)", "wrong side", "pushed back", "jumped", "passed", "behind a surface (share)",
                  "mean depth (m)", "impacts missed", "extra", "contacts", "most per step", "unsimulated (s)", "resting",
@@ -130,7 +130,7 @@ std::vector<Block> blocks_of(const Comparison& comparison, const ComparisonSourc
     return blocks;
 }
 
-// File names may contain any character.
+// Replaces the characters that the table lists. Texts must be escaped, because file names can contain any character.
 std::string escaped(const std::string& text, const std::vector<std::pair<char, const char*>>& table) {
     std::string result;
     for (const char c : text) {

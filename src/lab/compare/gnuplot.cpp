@@ -25,7 +25,7 @@ namespace ricochet {
 
 namespace {
 
-// Colours that are distinct for colour-blind readers (M. Okabe, K. Ito, "Color universal design", 2008).
+// Colours that colour-blind readers can distinguish (M. Okabe, K. Ito, "Color universal design", 2008).
 constexpr std::array kColors{"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000"};
 constexpr std::array kPointTypes{7, 5, 9, 13, 3};
 constexpr std::array kPointSizes{2.2, 1.7, 1.7, 1.7, 1.4};
@@ -61,10 +61,10 @@ std::string gnuplot_line_styles(std::size_t count) {
 
 namespace {
 
-constexpr auto kPause = std::chrono::milliseconds(20);  // between two checks whether gnuplot has ended
+constexpr auto kPause = std::chrono::milliseconds(20);  // time between two checks whether gnuplot has ended
 
-// Returns true if a file ends with the last chunk of a PNG picture. On a full disk, gnuplot may write a part of a
-// picture and still end with exit code 0.
+// Returns true if a file ends with the last chunk of a PNG picture. The exit code of gnuplot does not suffice, because
+// it can be 0 even if a full disk truncated the picture.
 bool is_whole_png(const std::filesystem::path& file) {
     constexpr std::string_view kEnd("\0\0\0\0IEND\xAE\x42\x60\x82", 12);
     std::ifstream in(file, std::ios::binary | std::ios::ate);
@@ -75,7 +75,7 @@ bool is_whole_png(const std::filesystem::path& file) {
     return in && end == kEnd;
 }
 
-// Removes the remaining unfinished pictures in its destructor.
+// Unfinished pictures of a script. The destructor removes the pictures that have not been renamed.
 class UnfinishedPictures {
 public:
     UnfinishedPictures(std::filesystem::path folder, const std::vector<std::string>& names)
@@ -96,7 +96,8 @@ public:
         for (UnfinishedFile& file : noted_) file.set_writer(process);
     }
 
-    // Renames the pictures to their final names. Returns false if one is missing or incomplete.
+    // Renames the pictures to their final names. Returns false if a picture is missing or incomplete, or cannot be
+    // renamed.
     [[nodiscard]] bool finish() const {
         for (const std::string& name : names_) {
             if (!is_whole_png(folder_ / (name + ending_))) return false;
@@ -116,7 +117,7 @@ private:
     std::list<UnfinishedFile> noted_;
 };
 
-// Starts the program in the folder and redirects its messages to the file. Returns 0 or the system's error.
+// Starts gnuplot in the folder, with its error messages redirected to a file. Returns 0 or an errno value.
 int start(pid_t& process, const std::filesystem::path& folder, std::vector<std::string> arguments,
           std::FILE* messages) {
     std::vector<char*> pointers;
@@ -130,14 +131,15 @@ int start(pid_t& process, const std::filesystem::path& folder, std::vector<std::
     posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // this process handles Ctrl-C and ends gnuplot
+    // So that Ctrl-C reaches only this process, which then stops gnuplot.
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
     const int error = ::posix_spawnp(&process, "gnuplot", &actions, &attributes, pointers.data(), environ);
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     return error;
 }
 
-// Returns the exit status, or -1 if the wait was stopped.
+// Returns the exit status, or -1 if the process was stopped or the wait failed.
 int wait_for(pid_t process, const std::function<bool()>& should_stop) {
     int status = 0;
     while (true) {
@@ -160,7 +162,8 @@ int draw_to_the_end(pid_t process, const std::function<bool()>& should_stop, Unf
     return status;
 }
 
-// Returns the first line with an error message. Lines that only show the location in the script are skipped.
+// Returns the first line with an error message ("line N: ..."), otherwise the first line. Lines before the message show
+// only the location in the script.
 std::string first_words(std::FILE* messages) {
     std::array<char, 400> line{};
     std::rewind(messages);

@@ -1,5 +1,5 @@
 /// \file
-/// Runs one measured or timed simulation, and computes surface normals at crossings from the verifier's reports.
+/// Runs one measured or timed simulation, and computes its errors and costs.
 #include "lab/compare/measured_run.h"
 
 #include <algorithm>
@@ -21,13 +21,13 @@
 
 namespace ricochet {
 
-/// The surfaces of a simulation, and their normals at crossings.
+/// Surfaces of a simulation, for the normals at crossings that the verifier reports.
 class SurfaceNormals {
 public:
     explicit SurfaceNormals(const Simulation& simulation);
-    /// Returns the normal at a crossing, of any length. Normals of triangles follow the counter-clockwise rule. Normals
-    /// of balls and cylinders point outward; they are taken at the end of the segment, which is the reported position.
-    /// Returns zero for planes.
+    /// Returns the normal at a crossing, which can have any length. Triangles are counter-clockwise when seen from the
+    /// tip of their normal. Normals of balls and cylinders point outward. They are computed at the reported position,
+    /// which is the end of the segment. Returns zero for planes.
     [[nodiscard]] Vec3 at(const Violation& crossing) const;
 
 private:
@@ -67,8 +67,8 @@ Vec3 SurfaceNormals::at(const Violation& crossing) const {
     return cross(vertices[b] - vertices[a], vertices[c] - vertices[a]);
 }
 
-// Normals are transformed to the world by the transposed inverse. Its columns are the cross products of the map's
-// columns, over the determinant.
+// Normals are transformed to world coordinates by the transposed inverse of the map. The columns of the transposed
+// inverse are the cross products of the map's columns, divided by the determinant.
 Vec3 SurfaceNormals::shape_normal(const Shape& shape, const Vec3& position) {
     const AffineMap& map = shape.world_from_unit;
     const Vec3 x{map.row_x.x, map.row_y.x, map.row_z.x};
@@ -90,7 +90,7 @@ Vec3 SurfaceNormals::shape_normal(const Shape& shape, const Vec3& position) {
 
 namespace {
 
-/// Records the data of a run, step by step.
+/// Recorder of a run's data, step by step.
 class Measurement {
 public:
     explicit Measurement(const Simulation& simulation)
@@ -99,7 +99,7 @@ public:
         note_energy(simulation);
         if (simulation.spawns_children()) note_births(simulation);
     }
-    Measurement(const Measurement&) = delete;  // the judge refers to the normals of this object
+    Measurement(const Measurement&) = delete;  // not copyable, because judge_ refers to normals_ of this object
     Measurement& operator=(const Measurement&) = delete;
     ~Measurement() = default;
 
@@ -134,7 +134,8 @@ private:
         if (potential) trace_.total.push_back(kinetic + *potential);
     }
 
-    // Records the keys of new particles. Particles that exist from the start have no emitter.
+    // Records the keys of new particles. Particles that exist from the start have no emitter, and their key has their
+    // id.
     void note_births(const Simulation& simulation) {
         for (const BirthRecord& birth : simulation.birth_records()) {
             while (trace_.keys.size() < birth.particle) trace_.keys.push_back({kNoEmitter, trace_.keys.size()});
@@ -207,7 +208,7 @@ bool is_as_good(const ReferenceErrors& exact, const ReferenceErrors& row) {
     if (row.position.count > 0 && exact.position.count > 0) {
         return exact.position.root_mean_square <= row.position.root_mean_square;
     }
-    return exact.impact.median <= row.impact.median;  // false if there are none
+    return exact.impact.median <= row.impact.median;  // false if one of them is kNoNumber
 }
 
 }  // namespace
@@ -260,8 +261,8 @@ void settle_cost(ComparisonRow& row, const ComparisonRow& at_equal_step,
 
 namespace {
 
-/// Returns true for the steps that a series of at most kMostEnergyPoints keeps: the first, the last, and steps evenly
-/// spaced between them.
+/// Returns true if the series of at most kMostEnergyPoints entries includes this step. The series includes the first
+/// step, the last step, and evenly spaced steps between them.
 bool is_kept(std::size_t step, std::size_t count) {
     if (count <= kMostEnergyPoints || step == 0) return true;
     const std::size_t intervals = kMostEnergyPoints - 1;
@@ -289,7 +290,8 @@ std::size_t born(const RunTrace& trace) {
     return std::max({trace.first_impact.size(), trace.alive.size(), trace.keys.size()});
 }
 
-/// Returns the reference's id of every particle of the run; kNobody if it was not born in the reference.
+/// Returns, for each particle of the run, the id of the same particle in the reference. The id is kNobody if the
+/// particle does not exist in the reference.
 std::vector<std::size_t> partners(const RunTrace& run, const RunTrace& reference) {
     std::vector<std::size_t> result(born(run), kNobody);
     const std::size_t known = born(reference);
@@ -324,7 +326,7 @@ void add_impact_errors(const RunTrace& run, const RunTrace& reference, std::span
     }
     const auto all = std::count_if(reference.first_impact.begin(), reference.first_impact.end(),
                                    [](double time) { return !std::isnan(time); });
-    errors.impacts_missed += static_cast<std::uint64_t>(all) - matched;  // particles never born in this run
+    errors.impacts_missed += static_cast<std::uint64_t>(all) - matched;  // particles that do not exist in this run
     errors.impact = spread_of(differences);
 }
 

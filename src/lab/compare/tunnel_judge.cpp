@@ -14,7 +14,8 @@ bool same_position(const Vec3& a, const Vec3& b) {
     return max_abs(a - b) <= kSameCrossing * std::max(max_abs(a), max_abs(b));
 }
 
-/// Counts crossings. Neighbouring triangles that a segment crosses in their common edge count as one crossing.
+/// Returns the number of crossings of a segment. If the segment crosses neighbouring triangles in their common edge,
+/// they count as one crossing.
 std::size_t count_crossings(const std::vector<const Violation*>& meetings) {
     std::vector<Vec3> different;
     for (const Violation* crossing : meetings) {
@@ -64,8 +65,9 @@ void TunnelJudge::add_step(std::span<const Violation> violations) {
     for (const Pair& pair : flipped) toggle(odd_, pair);
 }
 
-// A segment that crossed a shape has entered it, left it, or passed through it. Entering and leaving change the side.
-// If the number of segments and the change of side do not agree, one segment has passed through.
+// Each segment that crosses a shape enters it, leaves it, or passes through it. Entering and leaving change the side of
+// the particle. The particle is on another side after the step if and only if the number of these segments is odd. If
+// this does not hold, one of the segments passed through the shape.
 void TunnelJudge::judge_shape(const Pair& pair, const Segments& segments, bool flipped) {
     std::size_t count = 0;
     for (const auto& [time, crossings] : segments) count += crossings.size();
@@ -91,8 +93,8 @@ void TunnelJudge::judge_mesh(const Pair& pair, ColliderKind kind, const Segments
     }
 }
 
-// A particle that a surface pushes back leaves it through a part with the same facing as the entry. A particle that
-// leaves through a part with the opposite facing has passed through.
+// If the response pushes a particle back, the particle leaves the collider near its entry, where the normal is similar.
+// If the normals at entry and exit point in opposite directions, the particle has passed through.
 void TunnelJudge::change_side(const Pair& pair, const Violation& crossing) {
     const Vec3 normal = normal_at_(crossing);
     const auto [entry, is_entry] = went_in_.try_emplace(pair, normal);

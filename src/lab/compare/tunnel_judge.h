@@ -1,5 +1,5 @@
 /// \file
-/// Decides which particles tunnelled, from the violations that the verifier reports.
+/// Decision which particles tunnelled, based on the violations that the verifier reports.
 #pragma once
 
 #include <cstdint>
@@ -17,20 +17,21 @@
 
 namespace ricochet {
 
-/// Kinds of colliders, by the facts that the verifier reports about them.
+/// Kinds of colliders. The verifier reports different violations for each kind.
 enum class ColliderKind : std::uint8_t {
-    plane,        ///< sides; a segment crosses it once at most
-    shape,        ///< ball or cylinder: sides; a segment reports one crossing, however often it crosses
-    closed_mesh,  ///< sides, and every triangle that a segment crosses
-    open_mesh,    ///< every triangle that a segment crosses
+    plane,  ///< changes of side; a segment crosses a plane at most once
+    /// Ball or cylinder: changes of side; at most one crossing per segment, even if the segment crosses twice.
+    shape,
+    closed_mesh,  ///< changes of side, and every triangle that a segment crosses
+    open_mesh,    ///< only every triangle that a segment crosses
 };
 
 [[nodiscard]] std::vector<ColliderKind> collider_kinds(const Simulation& simulation);
 
-/// Normal of the surface at a reported crossing; of any length.
+/// Function that returns the normal of the surface at a reported crossing. The normal can have any length.
 using NormalAt = std::function<Vec3(const Violation&)>;
 
-/// Judges the particles of a run. The order of violations within a step does not matter.
+/// Counter of the particles of a run that went through surfaces. The order of violations within a step does not matter.
 class TunnelJudge {
 public:
     TunnelJudge(std::vector<ColliderKind> colliders, NormalAt normal_at)
@@ -38,13 +39,13 @@ public:
 
     /// Adds the violations of one step.
     void add_step(std::span<const Violation> violations);
-    /// Returns the counts. `is_penetrating` returns, for a particle's id, whether the response was pushing it back when
-    /// it was last seen.
+    /// Returns the counts. `is_penetrating` returns, for a particle's id, true if the response was pushing the particle
+    /// back after the particle's last step.
     [[nodiscard]] TunnelCounts verdict(const std::function<bool(std::uint64_t)>& is_penetrating) const;
 
 private:
-    using Pair = std::pair<std::uint64_t, std::uint32_t>;              // particle, collider
-    using Segments = std::map<double, std::vector<const Violation*>>;  // by the start time of the segment
+    using Pair = std::pair<std::uint64_t, std::uint32_t>;              // ids of a particle and a collider
+    using Segments = std::map<double, std::vector<const Violation*>>;  // crossings by the start time of their segment
 
     void judge_shape(const Pair& pair, const Segments& segments, bool flipped);
     void judge_mesh(const Pair& pair, ColliderKind kind, const Segments& segments);
@@ -52,8 +53,8 @@ private:
 
     std::vector<ColliderKind> colliders_;
     NormalAt normal_at_;
-    std::set<Pair> odd_;  // pairs in which the particle is on the wrong side now
-    // Normal of the surface where the particle went to the other side of a closed collider.
+    std::set<Pair> odd_;  // pairs in which the particle is currently on the wrong side
+    // Surface normals at the crossings by which particles went to the wrong side of a closed collider.
     std::map<Pair, Vec3> went_in_;
     std::set<std::uint64_t> jumped_;
     std::set<std::uint64_t> passed_;

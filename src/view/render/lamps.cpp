@@ -16,7 +16,7 @@ struct Cell {
     Vec3 intensity;
     Vec3 moment;          // sum of the positions times the brightness
     double weight = 0.0;  // sum of the brightness
-    double spread = 0.0;  // sum of the squared positions plus squared radii, times the brightness
+    double spread = 0.0;  // sum of (squared position + squared radius) times the brightness
 };
 
 using CellIndex = std::array<long, 3>;

@@ -72,7 +72,7 @@ private:
     Vec3 middle_, across_, along_;
 };
 
-/// Returns the light of a preset. The directions to the sun depend on the camera.
+/// Returns the light of a preset. The direction to the sun depends on the camera.
 [[nodiscard]] Light light_for(Lighting lighting, const Camera& camera);
 
 /// Returns a unit direction around the normal (its length is accurate to 1e-8). For uniform u and v in 0..1, the

@@ -32,7 +32,7 @@ struct PathPoint {
 
 /// Returns the path from `from` to the later time `to` as points. The points contain both ends and every node between
 /// them. More points between two nodes limit the distance of the path from the lines between the points to `sagitta`,
-/// in m. The limit can be exceeded if it needs more than 64 lines between two nodes.
+/// in m. There are at most 64 lines between two nodes, even if the limit needs more.
 [[nodiscard]] std::vector<PathPoint> path_points(std::span<const PathNode> nodes, double from, double to,
                                                  double sagitta);
 

@@ -28,7 +28,7 @@ struct PixelPosition {
     int y = 0;
 };
 
-/// Data about the spheres that replaces rays if it is faster than rays.
+/// Precomputed data about the spheres, which replaces ray tracing where it is faster.
 struct KnownSpheres {
     /// Spheres that camera rays through a tile can hit, nearest first. If std::nullopt, rays find the spheres.
     std::optional<std::span<const NearSphere>> listed;

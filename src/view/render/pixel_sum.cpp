@@ -54,7 +54,7 @@ void PixelSum::add_features(const Glance& glance) {
     seen_ += glance.covers ? 1.0 : 0.0;
 }
 
-// Returns, for each channel, the samples' light without Glance::own, divided by their light without occlusion.
+// Returns, for each channel, the samples' light other than Glance::own, divided by their Glance::plain.
 Vec3 PixelSum::lit() const { return {part(light_.x, plain_.x), part(light_.y, plain_.y), part(light_.z, plain_.z)}; }
 
 // Returns the expected light of a sample, in which the ratio `lit` of the pixel replaces the sample's own occlusion.

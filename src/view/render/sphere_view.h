@@ -45,9 +45,9 @@ struct SphereTiles {
 /// Finds the first sphere on each camera ray. There are at most kPacketRays rays, and `finds` has as many entries.
 void meet_spheres(std::span<const NearSphere> spheres, std::span<const PreviewRay> rays, std::span<SphereFind> finds);
 
-/// Returns, for each camera ray, true if the outline of a sphere can be visible near the ray. Near means at most
-/// `slope` times the distance along the ray away from it. Spheres beyond the ray's reach are ignored. There are at most
-/// kPacketRays rays.
+/// Returns, for each camera ray, true if the outline of a sphere can be visible near the ray. The distance of the
+/// outline from the ray must be at most `slope` times its distance along the ray. Spheres beyond the ray's reach are
+/// ignored. There are at most kPacketRays rays.
 [[nodiscard]] std::array<bool, kPacketRays> outlines_about(std::span<const PreviewRay> rays,
                                                            std::span<const NearSphere> spheres, double slope);
 

@@ -23,7 +23,7 @@ constexpr std::size_t kBlock = 4096;    // cells per unit of parallel work
 struct GridWalk {
     double at, slope, per_slope, ahead;
     std::size_t count;      // number of cells
-    std::size_t change;     // step from cell to cell: 1, or -1 as an unsigned number
+    std::size_t change;     // step from cell to cell: 1, or -1 by unsigned overflow
     double enters, leaves;  // heights at which the ray enters and leaves the grid
     std::size_t cell = 0;
     double next = 0.0;  // height at which the ray leaves the cell

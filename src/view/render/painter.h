@@ -28,7 +28,7 @@ struct PixelPosition {
     int y = 0;
 };
 
-/// Precomputed data about the spheres, which replaces ray tracing where it is faster.
+/// Precomputed data about the spheres. It replaces ray tracing of the spheres if it is faster.
 struct KnownSpheres {
     /// Spheres that camera rays through a tile can hit, nearest first. If std::nullopt, rays find the spheres.
     std::optional<std::span<const NearSphere>> listed;

@@ -13,8 +13,7 @@ namespace ricochet {
     return 0.2126 * light.x + 0.7152 * light.y + 0.0722 * light.z;
 }
 
-/// Returns the product of two colours, channel by channel. For example, a surface of one colour reflects light of the
-/// other.
+/// Returns the product of two colours, channel by channel, for example of light and of the surface that reflects it.
 [[nodiscard]] inline Vec3 times(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
 /// Maps light to the display's range. The luminance L becomes L (1 + L / white^2) / (1 + L), and the hue is preserved.

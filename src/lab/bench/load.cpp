@@ -55,7 +55,7 @@ std::string_view name_of(FileForm form) {
         case FileForm::off:
             return "OFF";
     }
-    throw InputError("a benchmark case names a form of file that does not exist");
+    throw InputError("a benchmark case has an unknown file format");
 }
 
 std::string_view ending_of(FileForm form) {
@@ -70,7 +70,7 @@ std::string_view ending_of(FileForm form) {
         case FileForm::off:
             return ".off";
     }
-    throw InputError("a benchmark case names a form of file that does not exist");
+    throw InputError("a benchmark case has an unknown file format");
 }
 
 const std::vector<LoadCase>& load_cases() {

@@ -174,7 +174,7 @@ std::string first_words(std::FILE* messages) {
         if (text.find("line ") != std::string::npos && text.find(": ") != std::string::npos) return text;
         if (first.empty()) first = text;
     }
-    return first.empty() ? "it said nothing" : first;
+    return first.empty() ? "no error message" : first;
 }
 
 }  // namespace

@@ -43,8 +43,9 @@ ExportColliders::ExportColliders(const RunFolder& folder) {
         if (!any_moves_ || !frame.moving.empty()) frames_.push_back(frame);
     }
     if (frames_.empty()) {
-        throw InputError(fmt::format("{}: the run has colliders that move, but no frame says where (moving_NNNNNN.vtp)",
-                                     folder.frames.front().path.parent_path().string()));
+        throw InputError(
+            fmt::format("{}: the run has moving colliders, but no frame has their positions (moving_NNNNNN.vtp)",
+                        folder.frames.front().path.parent_path().string()));
     }
     if (!any_moves_) return;
     std::map<std::uint32_t, TriangleMesh> first = read_moving_meshes(frames_.front());

@@ -38,12 +38,12 @@ std::vector<std::filesystem::path> pieces_of(const std::filesystem::path& path) 
         if (tag->name != "Piece") continue;
         const std::string& name = detail::attribute_of(source, *tag, "Source");
         // Only pieces of this run's frames are opened, so that an index file cannot name other files.
-        if (!step_of_piece_file(name)) source.refuse(fmt::format("the piece {} is none of a frame", name));
+        if (!step_of_piece_file(name)) source.refuse(fmt::format("the piece {} is not a file of a frame", name));
         if (!names.insert(name).second) source.refuse(fmt::format("the piece {} is named twice", name));
         pieces.push_back(path.parent_path() / name);
         require_own_file(pieces.back());
     }
-    if (!is_index || !is_closed || pieces.empty()) source.refuse("no whole index over pieces");
+    if (!is_index || !is_closed || pieces.empty()) source.refuse("the index of the pieces is incomplete");
     return pieces;
 }
 

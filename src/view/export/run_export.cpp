@@ -22,8 +22,8 @@ std::string numbered(std::uint64_t number) { return fmt::format("_{:06}{}", numb
 
 std::string left_out_note(const ExportColliders& colliders, const RunFolder& folder) {
     const std::size_t count = folder.frames.size() - colliders.frames().size();
-    return fmt::format("{} {} the colliders that move and {} left out", count,
-                       count == 1 ? "frame lacks" : "frames lack", count == 1 ? "is" : "are");
+    return fmt::format("{} {} the moving colliders and {} left out", count, count == 1 ? "frame lacks" : "frames lack",
+                       count == 1 ? "is" : "are");
 }
 
 const std::vector<double>* radii_of(const VtkPolyData& frame) {
@@ -34,7 +34,7 @@ const std::vector<double>* radii_of(const VtkPolyData& frame) {
 void add_colliders(const RunFolder& folder, const FrameFile& frame, GlbScene& scene, ExportReport& report) {
     const ExportColliders colliders(folder);
     if (colliders.any_moves() && frame.moving.empty()) {
-        throw InputError(fmt::format("--frame {}: lacks the colliders that move; another frame has them", frame.step));
+        throw InputError(fmt::format("--frame {}: lacks the moving colliders; another frame has them", frame.step));
     }
     const std::map<std::uint32_t, TriangleMesh> moving = colliders.moving(frame);
     std::size_t hidden = 0;

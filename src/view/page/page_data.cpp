@@ -35,7 +35,7 @@ std::vector<FrameFile> complete_frames(const RunFolder& folder) {
                                        [](const ColliderInfo& collider) { return collider.moves; });
     if (any_moves) std::erase_if(frames, [](const FrameFile& frame) { return frame.moving.empty(); });
     if (frames.empty()) {
-        throw InputError(fmt::format("{}: no frame says where the colliders are that move (moving_NNNNNN.vtp)",
+        throw InputError(fmt::format("{}: no frame has the positions of the moving colliders (moving_NNNNNN.vtp)",
                                      folder.frames.front().path.parent_path().string()));
     }
     return frames;

@@ -79,7 +79,7 @@ std::vector<std::string> notes_of(const PageSource& source, const PageFrames& fr
                                     100.0 * static_cast<double>(frames.left_out) / total));
     }
     if (source.frames.size() < source.folder.frames.size()) {
-        notes.push_back(fmt::format("{} frames lack the colliders that move and are left out",
+        notes.push_back(fmt::format("{} frames lack the moving colliders and are left out",
                                     source.folder.frames.size() - source.frames.size()));
     }
     notes.insert(notes.end(), options.shapes.notes.begin(), options.shapes.notes.end());

@@ -16,7 +16,8 @@ namespace ricochet {
 
 namespace {
 
-/// Numbers of particles between the prefetch of a particle, of its candidates and of their corners, and its move.
+/// Distances, in particles, from a prefetch to the move: of a particle's data, of its candidate triangles, and of their
+/// corners.
 constexpr std::size_t kPrefetchDistance = 6;
 constexpr std::size_t kTrianglePrefetchDistance = 4;
 constexpr std::size_t kVertexPrefetchDistance = 2;
@@ -84,7 +85,7 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     const std::size_t first_hit = scratch.hits.size();
     const std::size_t first_load = scratch.loads.size();
     const Flight* const plan = lead != nullptr ? &lead->flight : coupled().flight_of(i);
-    // A planned flight's duration need not be the difference of the clock's times to the last bit.
+    // The duration of a planned flight can differ by rounding from the difference of the clock's times.
     const bool as_planned = plan != nullptr && life.begin == step.begin && life.end == step.end;
     const double duration = as_planned ? plan->path.duration : life.end - life.begin;
     scratch.flown.clear();
@@ -136,8 +137,8 @@ void ActiveMover::apply_velocity_change(std::size_t i, const Vec3& change, doubl
     parts_.store.particles().spin[i] = parts_.store.spin_of(i, particle);
 }
 
-/// Lets the core of a sphere in overlap grow with its distance to the surfaces, at the time of its stored position. In
-/// contact the core keeps its radius.
+/// Grows the core of a sphere in overlap with the distance of its centre to the surfaces, at the time of its stored
+/// position. The core keeps its radius while the sphere is in contact. Without an overlap, the core is discarded.
 void ActiveMover::grow_core(std::size_t i, double time) {
     ParticleStore& store = parts_.store;
     if (!store.cores().has(i) || store.is_fixed(i)) return;
@@ -193,7 +194,7 @@ void ActiveMover::write_back(IslandMember& member, const TimeSpan& step, BlockRe
         parts_.schedule.leave_alone(i);
         return;
     }
-    // A sphere that slept on walls alone has pressed on them until now.
+    // A sphere that has slept on surfaces alone has pressed on them until now, so its weight is added.
     if (parts_.store.is_asleep(i)) record.counts.lost_impulses += add_weight(i, life.begin, 1.0);
     const Vec3 from = parts_.store.particles().position[i];
     write_back(i, moving, member.outcome, life.end, {member.lists.hits, {}, member.pair_velocity_change}, record);
@@ -357,8 +358,8 @@ void ActiveMover::prepare(MoveScratch& scratch) const {
     scratch.record_motions = parts_.observers.check != nullptr || parts_.observers.meter != nullptr;
 }
 
-// Prefetches in three stages, because neighbours in space are scattered in memory: the data that load() and store()
-// use, then the candidates, then their corners.
+// Prefetches in three stages, because neighbours in space are scattered in memory. The stages fetch the data for load()
+// and store(), the candidate triangles, and the corners of these triangles.
 void ActiveMover::prefetch(std::span<const std::uint32_t> active, std::size_t k) const {
     if (k + kPrefetchDistance < active.size()) prefetch(active[k + kPrefetchDistance]);
     const CollisionWorld& world = response_.rules().world;

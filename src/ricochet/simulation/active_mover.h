@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: the active set, and the loop that moves it by the response.
+/// Private to the simulation: the active set, and the mover of its particles.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ class CloudMotion;
 class FrictionMeter;
 class SleepingIslands;
 
-// The particles that need a query in a step, and the blocks in which threads move them.
+// Active set: the particles that need a query in a step, and the blocks in which threads move these particles.
 
 /// Particles per unit of parallel work.
 inline constexpr std::size_t kParticleBlock = 256;
@@ -34,11 +34,11 @@ inline constexpr std::size_t blocks_of(std::size_t particles) {
     return (particles + kParticleBlock - 1) / kParticleBlock;
 }
 
-/// Entries [begin, end) of the particles' arrays that are moved together: a spawn generation of a step.
+/// Spawn generation of a step: the entries [begin, end) of the particles' arrays, which are moved together.
 struct ParticleRange {
     std::size_t begin = 0;
     std::size_t end = 0;
-    bool are_children = false;  ///< true if particles have spawned them in this step
+    bool are_children = false;  ///< true if other particles have spawned these particles in this step
 
     [[nodiscard]] std::size_t size() const { return end - begin; }
     [[nodiscard]] bool empty() const { return begin == end; }
@@ -48,7 +48,7 @@ struct ParticleRange {
 class ActiveSet {
 public:
     ActiveSet() = default;
-    /// sizes: sizes of the blocks. The particles must be filled in, see block().
+    /// Makes blocks of the given sizes. The caller must fill in the particles with block().
     explicit ActiveSet(std::vector<std::size_t> sizes);
 
     [[nodiscard]] std::size_t size() const { return particles_.size(); }
@@ -60,8 +60,8 @@ public:
         return std::span(particles_).subspan(begin_of(k), ends_[k] - begin_of(k));
     }
 
-    /// Cuts the list into blocks of kParticleBlock. There are no more blocks than needed, because one thread adds up
-    /// their counts.
+    /// Cuts the list into full blocks of kParticleBlock particles. The number of blocks is kept small, because a single
+    /// thread adds up their counts.
     void cut_evenly();
     /// Sorts the list along a space-filling curve in the box, so that consecutive particles query the same triangles.
     /// Deterministic.
@@ -76,7 +76,7 @@ private:
     [[nodiscard]] std::size_t begin_of(std::size_t k) const { return k == 0 ? 0 : ends_[k - 1]; }
 
     std::vector<std::uint32_t> particles_;
-    std::vector<std::size_t> ends_;  // of the blocks
+    std::vector<std::size_t> ends_;  // end of each block in `particles_`
 };
 
 /// Returns the part of a step in which particle i lives.
@@ -85,7 +85,8 @@ inline TimeSpan life_in(const Particles& particles, std::size_t i, const TimeSpa
             std::min(step.end, particles.birth_time[i] + particles.lifetime[i])};
 }
 
-/// Objects that take part in the motion of single particles, each owned by a module. Null: the run does not have it.
+/// Objects that take part in the motion of single particles. Each is owned by a module. A null pointer means that the
+/// run does not have this object.
 struct MoveObservers {
     CoupledMotion* coupled = nullptr;  ///< null only before the first step
     const Offspring* offspring = nullptr;
@@ -116,24 +117,25 @@ public:
     [[nodiscard]] const Response& response() const { return response_; }
     /// Returns a mover of the same particles by another response, which must outlive it.
     [[nodiscard]] ActiveMover with(const Response& response) const { return {parts_, response}; }
-    /// Must be called at the start of a step that dynamic bodies or coupled motion may divide into substeps. The
-    /// bounces of all its substeps count together.
+    /// Resets the counts of bounces. Must be called at the start of a step that dynamic bodies or coupled motion may
+    /// divide into substeps, because a bounce budget applies to the whole step.
     void begin_step() { bounces_.assign(parts_.store.size(), 0); }
     /// Moves every particle of the set alone, on all threads. Writes one record per block of the set.
     void move(const ActiveSet& active, const TimeSpan& step, std::vector<BlockRecord>& blocks);
-    /// Path of a particle in a cloud for a substep, and the action of the others on it after it leaves that path.
+    /// Path of a cloud particle for a substep, and the force of the cloud on the particle after it leaves this path.
     struct Lead {
         const Flight& flight;
         const Coupling& pull;
     };
-    /// Moves one particle in a substep. lead: null for a particle that does not follow others.
+    /// Moves one particle in a substep. lead: null for a particle that is not in a cloud.
     void move_one(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record,
                   const Lead* lead = nullptr);
-    /// Gives a particle in a cloud a velocity change, in m/s, at a time, in s. It acts as if it had been part of the
-    /// forces in the `duration` seconds before. Surfaces that support the particle take their part.
+    /// Applies a velocity change, in m/s, to a cloud particle at a time, in s. The change acts as if a force had caused
+    /// it in the `duration` seconds before. Surfaces that support the particle oppose the change as they would oppose
+    /// this force.
     void apply_velocity_change(std::size_t i, const Vec3& change, double time, double duration, const Coupling& pull,
                                MoveScratch& scratch);
-    /// Records the hits, loads and contacts of moves. lists: MoveScratch since prepare(), or MoveLists.
+    /// Records the hits, loads and contacts of moves. lists: a MoveScratch filled since prepare(), or MoveLists.
     template <class Lists>
     void record_lists(const Lists& lists, BlockRecord& record) {
         record.counts.lost_impulses += parts_.recorder.totals().add(lists.hits);
@@ -146,8 +148,8 @@ public:
 
     // For particles that act on each other.
 
-    /// Returns the acceleration, in m/s^2, that is left of `pull` at a time, in s, in the present contact of particle
-    /// i. `pull` is the acceleration by forces.
+    /// Returns the acceleration, in m/s^2, of particle i in its present contact at a time, in s. `pull` is its
+    /// acceleration by forces alone. The reaction of the contact surfaces is added to it.
     [[nodiscard]] Vec3 supported_acceleration(std::size_t i, double time, const Vec3& pull);
     /// Applies velocity corrections to particles in contact at the end of a substep.
     void apply_correction(std::span<const CoupledMotion::VelocityCorrection> corrections, const TimeSpan& part,
@@ -155,8 +157,8 @@ public:
 
     // For spheres that touch each other, which are moved together.
 
-    /// Loads a particle into a new member at the start of its life in the step. Returns false if the particle does not
-    /// live in the step.
+    /// Loads a particle into a new island member, at the start of its life in the step. Returns false if the particle
+    /// does not live in the step.
     [[nodiscard]] bool set_out(std::size_t i, const TimeSpan& step, IslandMember& member);
     /// Stores the final state and the records of a member.
     void write_back(IslandMember& member, const TimeSpan& step, BlockRecord& record);
@@ -172,15 +174,15 @@ public:
     [[nodiscard]] std::vector<ColliderLoad> preview(const ParticleRange& range, const TimeSpan& step);
 
     /// Adds to the totals of surfaces the impulse of a sleeping particle's weight from its last move until a time, in
-    /// s. sign -1 subtracts exactly the same. Returns the number of impulses that were too large for the totals.
-    /// Several threads may call it for different particles.
+    /// s. A sign of -1 subtracts exactly the impulse that +1 adds. Returns the number of impulses that were too large
+    /// for the totals. Several threads may call this function for different particles.
     std::uint64_t add_weight(std::size_t i, double until, double sign);
-    /// Adds the weights of all sleeping particles in this way.
+    /// Calls add_weight() for all particles.
     void add_weights(double until, double sign);
     /// Adds impulses to the totals of surfaces.
     void press(std::span<const SurfaceHit> hits);
-    /// Wakes a sphere that has slept on others, from a time on, in s. Must be called before the sleeping islands forget
-    /// it.
+    /// Wakes a sphere that has slept on other spheres, at a time, in s. Must be called before the sleeping islands
+    /// remove the sphere.
     void wake(std::size_t i, double time);
     /// Tells the verifier, if there is one, that a particle has kept its position in a step.
     void check_sleeper(std::size_t i, const TimeSpan& step, BlockRecord& record) const;
@@ -190,7 +192,7 @@ private:
     void record_deviation(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
                           std::vector<FlownPiece>& flown, const Vec3& impulse);
     void record_deviation(IslandMember& member);
-    /// Records the passages of particle i past counters, from a stored position in m to its present one.
+    /// Records the passages of particle i at counters between the position `from`, in m, and its present position.
     void note_passages(std::size_t i, const Vec3& from, std::span<const FlownPiece> flown,
                        std::span<const Segment> segments, BlockRecord& record) const;
     void grow_core(std::size_t i, double time);
@@ -201,7 +203,7 @@ private:
         Vec3 by_surfaces{};  ///< N s, in addition to the hits
         Vec3 by_spheres{};   ///< m/s
     };
-    /// is_pulled: true for a particle in a cloud. It does not sleep, and gets no forecast of free flight.
+    /// is_pulled: true for a particle in a cloud. Such a particle does not sleep and gets no forecast of free flight.
     void write_back(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
                     const MoveImpulses& impulses, BlockRecord& record, bool is_pulled = false);
     [[nodiscard]] RunawayCause runaway_cause(std::size_t i, const MoveImpulses& impulses) const;
@@ -210,8 +212,8 @@ private:
     void prefetch(std::span<const std::uint32_t> active, std::size_t k) const;
 
     MoverParts parts_;
-    const Response& response_;            // by make_response(); `exact` without a flow moves by ParticleMover::run()
-    std::vector<std::uint32_t> bounces_;  // of each particle since begin_step(); newer particles have no entry
+    const Response& response_;            // from make_response(); without a flow, `exact` calls ParticleMover::run()
+    std::vector<std::uint32_t> bounces_;  // per particle, since begin_step(); newer particles have no entry
 };
 
 }  // namespace ricochet

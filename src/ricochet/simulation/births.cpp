@@ -13,16 +13,16 @@
 namespace ricochet {
 namespace {
 
-/// Births that a thread makes at a time, in some hundred microseconds.
+/// Births in one block of parallel work. A block takes some hundred microseconds.
 constexpr std::size_t kBirthBlock = 64;
-/// Births that are taken off the schedule at a time. More need memory for the refused ones, fewer need more
-/// communication.
+/// Largest number of births in a wave, that is, of births that are taken off the schedule together. Larger waves need
+/// more memory for refused births. Smaller waves need more communication.
 constexpr std::uint64_t kMostInWave = std::uint64_t{1} << 20U;
-/// Most births in a wave that every rank makes for itself if they may be refused. For so few this is faster than
+/// Largest wave of which every rank makes all births if births can be refused. For so few births this is faster than
 /// communicating the refusals.
 constexpr std::size_t kFewBirths = 16;
 
-/// Number of slices of time in which emitters repeat their births, so that no list of births becomes long.
+/// Largest number of time slices into which replay() divides the births, so that no list of births becomes long.
 constexpr std::uint64_t kReplaySlices = 1000;
 
 bool makes_spheres(const Emitter& emitter) {
@@ -73,8 +73,9 @@ bool StepBirths::make() {
     return true;
 }
 
-// Takes at most as many births of an emitter as there is room for, so that few are made in vain. Without other ranks a
-// wave ends with the first birth that does not fit into memory, so that make() can report it early.
+// Takes at most as many births of each emitter as the population has room for, so that few births are made in vain. On
+// a single rank, a wave ends with the first birth that does not fit into memory. make() can then report the error
+// early.
 StepBirths::Wave StepBirths::next_wave() {
     const bool may_end = share_.is_alone() && limits_.fitting < limits_.room;
     const std::uint64_t most = may_end ? std::min(kMostInWave, limits_.fitting + 1 - made_here_) : kMostInWave;
@@ -121,8 +122,8 @@ void StepBirths::make(Wave& wave) {
     for (const Entry& entry : wave) ++made_of_[entry.emitter];
 }
 
-// Keeps the accepted births of this rank until the step ends. If they are fewer than half of the births made, frees the
-// memory of the others.
+// Keeps the accepted births of this rank until the step ends. Frees the memory of the other births if fewer than half
+// of all births are kept.
 void StepBirths::keep_local(Wave& wave, std::span<const std::size_t> mine, std::vector<std::optional<Particle>>& made) {
     std::vector<std::size_t> here;
     for (std::size_t j = 0; j < mine.size(); ++j) {
@@ -146,8 +147,8 @@ void StepBirths::make_by_threads(const Wave& wave, std::span<const std::size_t> 
     });
 }
 
-// Tests births against those before them. A refused one is made again from its first draw. It repeats the refused
-// position and continues from there.
+// Tests each birth against the births before it. A refused birth is made again from its first random draw: it draws the
+// refused position again, and then further positions.
 void StepBirths::look_among(const Wave& wave, std::span<const std::size_t> mine,
                             std::vector<std::optional<Particle>>& made) const {
     const BirthTest both = [this](const Particle& particle) {
@@ -210,8 +211,9 @@ void Emission::emit(const TimeSpan& step) {
     if (births.count() > 0) population_.bind();
 }
 
-/// Returns the tests of births in a step: a sphere must overlap no surface, and no other sphere that it can meet. A
-/// test is empty if nothing can be overlapped. occupancy: filled with the spheres present by the first birth.
+/// Returns the tests of births in a step. A new sphere must not overlap a surface, or another sphere if spheres
+/// collide. A test is empty if there is nothing to overlap. occupancy: the first tested birth fills it with the spheres
+/// present.
 BirthTests Emission::tests_in(const TimeSpan& step, std::optional<SpawnOccupancy>& occupancy) const {
     BirthTests tests;
     const bool do_spheres_meet = parts_.options.particle_contacts.has_value();
@@ -252,7 +254,7 @@ SpawnOccupancy Emission::occupancy_of(const TimeSpan& step) const {
     return occupancy;
 }
 
-// Births do not depend on the division of time.
+// The slices do not change the births, because births do not depend on the division of time.
 void Emission::replay(std::uint64_t steps, double time) {
     const std::uint64_t slices = std::min(steps, kReplaySlices);
     for (Emitter& emitter : emitters_) {

@@ -1,11 +1,10 @@
 /// \file
-/// Private to the simulation: the births of a step by emitters, made by all threads and by all ranks, and the emitters
-/// of a run.
+/// Private to the simulation: the emitters of a run, and the births of a step, which all threads and all ranks make.
 ///
-/// A birth depends only on its emitter and its number there, so any thread and any rank can make it. All ranks must
-/// know which births there are: ids are given in the order of (time, emitter, number), and a refused birth gets none.
-/// Each rank takes all births off the schedule, which is cheap, and makes its part. Births that surfaces refuse are
-/// communicated to all ranks.
+/// A birth depends only on its emitter and on its number within the emitter. Any thread and any rank can therefore make
+/// it. All ranks must know all births, because ids follow the order of (time, emitter, number) and a refused birth gets
+/// no id. Each rank takes all births off the schedule, which is cheap, and makes only its own particles. Births that
+/// surfaces refuse are communicated to all ranks.
 #pragma once
 
 #include <cstdint>
@@ -22,11 +21,11 @@ namespace ricochet {
 
 struct SimulationSetup;
 
-/// Tests that decide whether a birth takes place. Empty functions refuse nothing.
+/// Tests that decide whether a birth takes place. An empty function refuses nothing.
 struct BirthTests {
-    BirthTest alone;  ///< tests a birth by itself; pure, called from any thread; never refuses a point
-    /// Tests a birth that has passed `alone` against the births before it, and remembers the accepted ones. Called by
-    /// one thread, for one emitter after the other. Not used if ranks share the run.
+    BirthTest alone;  ///< tests a birth without the other births; pure, called from any thread; accepts every point
+    /// Tests a birth that has passed `alone` against the births before it. Stores each birth that it accepts. Called by
+    /// one thread, for one emitter after the other. Not used if several ranks share the run.
     BirthTest among;
 };
 
@@ -41,18 +40,18 @@ struct BirthLimits {
 /// The births of a step.
 class StepBirths {
 public:
-    /// All must outlive it.
+    /// The arguments must outlive the object.
     StepBirths(std::span<Emitter> emitters, const BirthLimits& limits, const BirthTests& tests, const RankShare& share);
     StepBirths(const StepBirths&) = delete;
     StepBirths& operator=(const StepBirths&) = delete;
 
-    /// Makes the births. All ranks call it. Returns false if more particles are born here than fit. The schedules have
-    /// then advanced, and no ids have been given.
+    /// Makes the births. All ranks must call it. Returns false if more particles are born on this rank than fit into
+    /// memory. In this case the schedules have advanced, but no ids have been given.
     [[nodiscard]] bool make();
 
     /// Returns the births of this rank with their ids, ascending.
     [[nodiscard]] std::span<Particle* const> here() const { return here_; }
-    /// Counts on all ranks.
+    /// Counts over all ranks.
     [[nodiscard]] std::uint64_t count() const { return count_; }
     [[nodiscard]] std::uint64_t refused_by_overlap() const { return refused_by_overlap_; }
     [[nodiscard]] std::uint64_t refused_by_population() const { return refused_by_population_; }
@@ -80,34 +79,34 @@ private:
     BirthLimits limits_;
     const BirthTests& tests_;
     const RankShare& share_;
-    Wave all_;                                                // in the order of waves
-    std::vector<std::vector<std::optional<Particle>>> made_;  // by this rank, in a list per wave
-    std::vector<std::uint64_t> made_of_;                      // per emitter, on all ranks
+    Wave all_;                                                // births of all waves, wave by wave
+    std::vector<std::vector<std::optional<Particle>>> made_;  // made by this rank, one list per wave
+    std::vector<std::uint64_t> made_of_;                      // per emitter, over all ranks
     std::uint64_t made_here_ = 0;
-    std::uint64_t taken_ = 0;  // births off the schedule, on all ranks
+    std::uint64_t taken_ = 0;  // births taken off the schedule, over all ranks
     std::vector<Particle*> here_;
     std::uint64_t count_ = 0;
     std::uint64_t refused_by_overlap_ = 0;
     std::uint64_t refused_by_population_ = 0;
 };
 
-/// Adds particles to a population: those of the setup at the start, and those of emitters in each step.
+/// Adds particles to a population: particles of the setup at the start, and particles of the emitters in each step.
 class Emission {
 public:
-    /// setup: gives its emitters away. parts: of the population; all must outlive it.
+    /// setup: its emitters are moved out. parts: parts of the population. All other arguments must outlive the object.
     Emission(SimulationSetup& setup, Population& population, const PopulationParts& parts, RankShare& share);
 
     [[nodiscard]] const std::vector<Emitter>& emitters() const { return emitters_; }
-    /// Replaces the emitters by the same ones at an earlier time.
+    /// Replaces the emitters by copies of them from an earlier time.
     void go_back(const std::vector<Emitter>& emitters) { emitters_ = emitters; }
     /// Returns true if particles of the setup or of its emitters can be spheres.
     [[nodiscard]] bool has_spheres() const { return has_spheres_; }
 
-    /// Adds the particles of the setup, which are moved out of it.
+    /// Adds the particles of the setup. Moves them out of `first`.
     void add_first(std::vector<Particle>& first);
-    /// Adds the particles that emitters emit in a step. All ranks call it.
+    /// Adds the particles that emitters emit in a step. All ranks must call it.
     void emit(const TimeSpan& step);
-    /// Repeats the births until a time, in s, after a number of steps, without adding particles.
+    /// Advances the emitters to a time, in s, without adding particles. steps: number of steps until this time.
     void replay(std::uint64_t steps, double time);
 
 private:

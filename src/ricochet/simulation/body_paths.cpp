@@ -12,9 +12,9 @@
 namespace ricochet {
 namespace {
 
-/// Largest entry of the product of a rotation and its transpose, minus the unit matrix. A step adds a few roundings of
-/// 1e-16, so a run of 1e9 steps stays below. Larger: stretched shapes would be accepted. Local: a limit of input
-/// values.
+/// Largest allowed entry of the product of a rotation and its transpose, minus the unit matrix. A step adds a few
+/// rounding errors of 1e-16, so a run of 1e9 steps stays below this bound. A larger bound would accept stretched
+/// shapes. Local: a limit of input values.
 constexpr double kMostSkew = 1e-6;
 
 bool is_unit(const Vec3& v) { return std::fabs(dot(v, v) - 1.0) <= kMostSkew; }
@@ -37,7 +37,7 @@ bool is_path(const BodyPath& path) {
            is_rigid(path.at_begin);
 }
 
-/// Speeds are limited as at the start of a scene.
+/// Returns true if the state of a body is in range. The limits of speeds are those for the start of a scene.
 bool is_body(const DrivenBody& body) {
     return is_rigid(body.world_from_frame()) && is_finite(body.center()) && length(body.velocity()) <= kMaxSpeed &&
            length(body.angular_velocity()) <= kMaxSpeed && std::isfinite(body.coordinate()) &&
@@ -46,7 +46,7 @@ bool is_body(const DrivenBody& body) {
 
 bool differ(const Vec3& a, const Vec3& b) { return length(a - b) > kSameVelocity * (length(a) + length(b)); }
 
-/// Returns true if a path begins with another velocity than that at the end of the path before.
+/// Returns true if the velocity at the beginning of a path differs from the velocity at the end of the path before it.
 bool jumps(const BodyPath& before, const BodyPath& after) {
     const MovingPose came = before.at(before.end);
     const MovingPose goes = after.at(after.begin);
@@ -93,7 +93,8 @@ void BodyPaths::plan(const std::vector<Wrench>& loads, double begin, double end)
         }
         frames_->forget_paths(frame_of_[k], oldest_);
         const double size = max_abs(next.at(end).world_from_frame.translation);
-        // A body may turn only about its own centre. Sweeps along such fast rotations would not end.
+        // The rotation is checked too, because a body can turn about a centre that does not move. Sweeps along such a
+        // fast rotation would not end.
         const MotionBounds motion = next.bounds(begin, end);
         if (!(size <= kLargestCoordinate) || !(std::max(motion.origin[1], motion.rotation[1]) < kMaxSpeed)) {
             throw DivergedError(fmt::format(
@@ -136,7 +137,8 @@ double BodyPaths::repeat(double time) {
     return paths[path].end;
 }
 
-/// Sets a flag on a body's colliders if its velocity jumps at the start of a path. All bodies have the same substeps.
+/// Publishes to a body's colliders whether the body's velocity jumps at the start of a path. The index of a path is the
+/// same for all bodies, because all bodies have the same substeps.
 void BodyPaths::publish_velocity_jump(std::size_t body, std::size_t path) const {
     if (collider_of_[body] == kWorldBody) return;
     const std::vector<BodyPath>& paths = of(body);

@@ -78,14 +78,14 @@ std::size_t Simulation::remove_particles(std::span<const std::uint64_t> ids) {
     return removed;
 }
 
-// Free flights and sleep were decided for the forces until now.
+// Ends free flights and wakes sleepers, because both were decided with the previous forces.
 void Simulation::set_forces(std::vector<std::unique_ptr<Force>> forces) {
     impl().control.begin_change();
     if (options().flow != nullptr && !forces.empty()) {
         throw InputError(
             fmt::format("set_forces: found {} forces, expected none: a flow carries the particles", forces.size()));
     }
-    ForceField field(std::move(forces));  // refuses null pointers before anything changes
+    ForceField field(std::move(forces));  // throws for a null pointer, before anything changes
     if (field.needs_temperature() && !particles().attributes.find(kTemperatureAttribute)) {
         throw InputError(
             "set_forces: found thermal buoyancy, expected the attribute \"temperature\" to be declared for it");

@@ -52,7 +52,7 @@ bool ChildrenModule::spawn(const TimeSpan& step) {
     return counts.children > 0;
 }
 
-/// Gives the last particle its parent's sides of surfaces, whatever sides it begins on.
+/// Copies the parent's sides of surfaces to the last particle, even if the particle starts on other sides.
 void ChildrenModule::inherit_sides(const Child& child) {
     ParticleStore& store = parts_.population.store();
     const std::size_t i = store.size() - 1;

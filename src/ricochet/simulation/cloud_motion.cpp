@@ -13,8 +13,8 @@
 namespace ricochet {
 namespace {
 
-/// The method after a bounce, for the rest of a piece. It is of fourth order whatever the run's integrator is, because
-/// children circle the parent or oscillate about it.
+/// Returns the response that moves a child after a bounce, for the rest of a piece. Its integrator is of fourth order
+/// for every integrator of the run, because children circle the parent or oscillate about it.
 std::unique_ptr<Response> response_of_clouds(const ResponseRules& rules) {
     ResponseRules own = rules;
     own.settings.integrator = IntegratorKind::rk4;
@@ -24,11 +24,11 @@ std::unique_ptr<Response> response_of_clouds(const ResponseRules& rules) {
 
 }  // namespace
 
-/// A child on its way through a step.
+/// Progress of a child through a step.
 struct CloudMotion::Journey {
     std::size_t particle = 0;
     double now = 0.0;    ///< s
-    double until = 0.0;  ///< s, of its life in the step
+    double until = 0.0;  ///< end of the child's life in the step, in s
     Track* track = nullptr;
 };
 
@@ -94,7 +94,7 @@ void CloudMotion::before_generation(const ParticleRange& spawn_generation, const
     }
 }
 
-/// Notes the paths of parents outside clouds.
+/// Records the paths of parents that are not in a cloud themselves.
 void CloudMotion::note_tracks(const ParticleRange& spawn_generation, const TimeSpan& step,
                               const std::vector<BlockRecord>& blocks) {
     std::vector<ContactRecord> all;
@@ -112,7 +112,7 @@ void CloudMotion::note_tracks(const ParticleRange& spawn_generation, const TimeS
     }
 }
 
-/// Returns the children of the generation by their depth below a parent outside clouds.
+/// Returns the cloud particles of the generation, grouped by their depth below a parent that is not in a cloud.
 std::vector<std::vector<std::size_t>> CloudMotion::levels_of(const ParticleRange& spawn_generation) const {
     std::vector<std::size_t> all;
     for (std::size_t i = spawn_generation.begin; i < spawn_generation.end; ++i) {
@@ -150,7 +150,7 @@ void CloudMotion::after_substep(const ParticleRange& spawn_generation, const Tim
     }
 }
 
-/// track: filled with the child's path if it has children itself.
+/// Moves a child to the end of its life in the step. track: filled with the child's path if the child has children.
 void CloudMotion::move_child(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record,
                              Track& track) {
     Particles& particles = store_.particles();
@@ -183,7 +183,8 @@ void CloudMotion::move_child(std::size_t i, const TimeSpan& step, MoveScratch& s
     track.knots.push_back({journey.now, particles.position[i], particles.velocity[i], particles.velocity[i]});
 }
 
-/// Returns true if the parent has ended, so that the child continues alone.
+/// Moves the child along its parent's path. Returns true if the parent's life has ended, so that the child continues
+/// alone.
 bool CloudMotion::follow(Journey& journey, const Track& parent, MoveScratch& scratch, BlockRecord& record) {
     const std::vector<FlightKnot>& knots = parent.knots;
     for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
@@ -191,7 +192,7 @@ bool CloudMotion::follow(Journey& journey, const Track& parent, MoveScratch& scr
         const FlightKnot& to = knots[k + 1];
         if (to.time < journey.now) continue;
         if (!fly_along(journey, from, to, scratch, record)) return false;
-        const bool is_last = k + 2 == knots.size();  // a parent that ends at an impact does not pass it on
+        const bool is_last = k + 2 == knots.size();  // a parent that ends at an impact does not pass the impact on
         if (!(is_last && parent.ends)) add_forces(journey, from, to, scratch);
     }
     return parent.ends && journey.now >= knots.back().time;
@@ -204,8 +205,8 @@ CloudMember CloudMotion::member_of(std::size_t i, const FlightKnot& from, const 
     return {rule_of(i), path, from.time, members_[i].offset, store_.particles().birth_time[i]};
 }
 
-/// Moves the child along one flight of the parent, which ends at an impact or with the step. Returns false if the
-/// child's life in the step ends before that.
+/// Moves the child along one flight of the parent. The flight ends at an impact or with the step. Returns false if the
+/// child becomes fixed, or its life in the step ends, before the flight ends.
 bool CloudMotion::fly_along(Journey& journey, const FlightKnot& from, const FlightKnot& to, MoveScratch& scratch,
                             BlockRecord& record) {
     const std::size_t i = journey.particle;
@@ -221,7 +222,7 @@ bool CloudMotion::fly_along(Journey& journey, const FlightKnot& from, const Flig
     return end == to.time;
 }
 
-/// Changes the child's velocity by the parent's change at the end of a flight, that is, by its impact.
+/// Adds the velocity change of the parent's impact at the end of a flight to the child's velocity.
 void CloudMotion::add_forces(Journey& journey, const FlightKnot& from, const FlightKnot& to, MoveScratch& scratch) {
     const std::size_t i = journey.particle;
     Particles& particles = store_.particles();

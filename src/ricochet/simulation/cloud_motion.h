@@ -1,11 +1,12 @@
 /// \file
-/// Private to the simulation: clouds. The children of a cloud move with their parent, after it and along its path.
+/// Private to the simulation: clouds. The children of a cloud move with their parent. A child is moved after its
+/// parent, along the parent's path.
 ///
-/// A parent's path in a step is a cubic between each two of its knots (flight_knots.h). The path of a child is the sum
-/// of the parent's path and of its own motion about the parent. It is divided into pieces, and each piece is swept and
-/// certified like the path of any particle. The child bounces off surfaces by itself. From there on the response
-/// follows the sum of the same accelerations. At an impact of the parent, the child's velocity changes like the
-/// parent's.
+/// Between two consecutive knots, the path of a parent is a cubic polynomial (flight_knots.h). The path of a child is
+/// the sum of the parent's path and of the child's own motion about the parent. It is divided into pieces, and each
+/// piece is swept and certified like the path of any particle. A child bounces off surfaces on its own. After a bounce,
+/// the response integrates the accelerations of both motions. At an impact of the parent, the child's velocity changes
+/// by the same amount as the parent's velocity.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +29,8 @@ namespace ricochet {
 /// The clouds of a run.
 class CloudMotion final : public Module {
 public:
-    /// mover: of all other particles; it also moves particles that leave a cloud. All must outlive the object.
+    /// mover: the mover of all other particles. It also moves particles that leave a cloud. All arguments must outlive
+    /// the object.
     CloudMotion(const std::vector<Emitter>& emitters, ParticleStore& store, ActiveMover& mover,
                 const Retirement& retirement);
 
@@ -36,16 +38,18 @@ public:
     [[nodiscard]] bool leads(std::size_t i) const { return members_[i].parent != kNobody; }
     /// Returns the id of each particle's parent, or -1 for a particle outside clouds.
     [[nodiscard]] std::vector<std::int64_t> parents() const;
-    /// Returns the path of a parent in this step. It is empty for a particle that is no parent, or has not moved yet.
+    /// Returns the path of a parent in this step. The path is empty if the particle is not a parent or has not moved
+    /// yet.
     [[nodiscard]] std::span<const FlightKnot> knots_of(std::uint64_t id) const;
 
     /// Makes an appended particle move with its parent.
     void join(std::size_t i, const CloudMembership& offset) { members_[i] = {offset.parent, offset.offset}; }
 
     void begin_step(const TimeSpan& /*step*/) override { tracks_.clear(); }
-    /// Keeps the states of parents before they move.
+    /// Stores the states of parents before they move.
     void before_generation(const ParticleRange& generation, const TimeSpan& step) override;
-    /// Moves the children of a generation after all its other particles, parents before their children.
+    /// Moves the cloud particles of a generation after all its other particles. Parents are moved before their
+    /// children.
     void after_substep(const ParticleRange& generation, const TimeSpan& substep,
                        std::vector<BlockRecord>& blocks) override;
     /// Releases or ends the children of parents that leave the bounds.
@@ -60,11 +64,11 @@ private:
     static constexpr std::uint64_t kNobody = std::numeric_limits<std::uint64_t>::max();
     struct Member {
         std::uint64_t parent = kNobody;  ///< id
-        Vec3 offset;                     ///< m, about it, at the child's birth
+        Vec3 offset;                     ///< cloud offset at the child's birth, in m
     };
     struct Track {
         std::vector<FlightKnot> knots;
-        bool ends = false;  ///< the particle ends at the last knot
+        bool ends = false;  ///< true if the particle's life ends at the last knot
     };
     struct Journey;
 
@@ -95,9 +99,9 @@ private:
     ActiveMover& free_mover_;
     std::unique_ptr<Response> response_;
     ActiveMover mover_;
-    std::vector<std::uint8_t> has_children_;  // per emitter: its particles have clouds
+    std::vector<std::uint8_t> has_children_;  // per emitter: 1 if its particles have clouds, else 0
     std::vector<Member> members_;             // per particle
-    std::vector<PhaseState> starts_;          // of the particles of the generation
+    std::vector<PhaseState> starts_;          // states of the generation's parents at the start of the substep
     std::unordered_map<std::uint64_t, Track> tracks_;
 };
 

@@ -12,7 +12,8 @@
 namespace ricochet {
 namespace {
 
-/// Also tests the colliders in moving frames, with their poses at a time, in s.
+/// Returns true if no collider intersects the segment. Colliders in moving frames are tested in their poses at a time,
+/// in s.
 bool is_clear_at(const MovingColliders& bodies, double time, const Vec3& from, const Vec3& to) {
     ContactScratch scratch;
     if (!is_clear(bodies.world(kWorldBody), scratch, from, to)) return false;
@@ -128,7 +129,7 @@ std::uint64_t CollisionScene::hash() const {
     return *hash_;
 }
 
-// A changed mesh file is a changed setup.
+// Includes the vertices and triangles, because a changed mesh file is a changed setup.
 std::uint64_t CollisionScene::computed_hash() const {
     StateHash hash;
     const auto add_triangles = [&](const auto& triangles) {

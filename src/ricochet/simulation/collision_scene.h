@@ -23,12 +23,13 @@ namespace ricochet {
 /// The colliders of a run in all their frames. A collider without a frame is at rest in the world.
 class CollisionScene {
 public:
-    /// frames: copied, because the paths of bodies belong to one run; null without any. chord_margin: of the colliders
-    /// at rest, in m. Throws InputError like CollisionWorld and MovingColliders.
+    /// frames: null if there are no moving frames. They are copied, because the paths of bodies belong to one run.
+    /// chord_margin: chord margin of the colliders at rest, see CollisionWorld. Throws InputError like CollisionWorld
+    /// and MovingColliders.
     CollisionScene(std::vector<ColliderDescription> colliders, std::vector<Material> materials,
                    const std::shared_ptr<const FrameTree>& frames, double chord_margin);
 
-    /// Returns the colliders at rest, which also know the names of all surfaces.
+    /// Returns the collision world of the colliders at rest. It also stores the names of all surfaces.
     [[nodiscard]] const CollisionWorld& world() const { return *world_; }
     [[nodiscard]] std::shared_ptr<const CollisionWorld> shared_world() const { return world_; }
     /// Returns the colliders in all frames, at rest and moving.
@@ -48,31 +49,33 @@ public:
 
     /// Returns the deepest overlap of a particle with a surface at its birth.
     [[nodiscard]] std::optional<Overlap> overlap_of(const Particle& particle) const;
-    /// Returns true if no surface lies between a parent and a child at the child's birth, and the child overlaps none.
+    /// Returns true if, at the child's birth, no surface lies between the parent and the child and the child overlaps
+    /// no surface.
     [[nodiscard]] bool has_room_beside(const Particle& parent, const Particle& child) const;
 
     // Single colliders and surfaces.
 
-    /// Returns the world in whose frame a collider is at rest; for a deforming mesh, the world of colliders at rest.
+    /// Returns the collision world of the frame in which a collider is at rest. For a deforming mesh it is the world of
+    /// the colliders at rest.
     [[nodiscard]] const CollisionWorld& world_of(std::size_t collider) const;
-    /// Returns the mesh of a collider in its frame at a time, in s; nothing for a plane.
+    /// Returns the mesh of a collider, in the collider's frame, at a time, in s. A plane has no mesh.
     [[nodiscard]] std::optional<TriangleMesh> mesh_of(std::size_t collider, double time) const;
     [[nodiscard]] MovingPose pose_of(std::size_t collider, double time) const;
-    /// Returns the point of a surface next to a position in the world, in m, at a time, in s.
+    /// Returns the point of a surface that is closest to a world position, in m, at a time, in s.
     [[nodiscard]] SurfacePosition closest_point(SurfaceId surface, const Vec3& position, double time) const;
     [[nodiscard]] std::size_t triangle_count() const;
     [[nodiscard]] std::size_t degenerate_triangles() const;
 
-    /// Returns a hash of the colliders in their frames, and of the motion of these.
+    /// Returns a hash of the colliders in their frames and of the motion of the frames.
     [[nodiscard]] std::uint64_t hash() const;
-    /// Shares the memory of meshes that neither move in their frames nor deform between the ranks of a machine.
+    /// Shares the memory of all rigid meshes between the ranks of a machine.
     void share_meshes(Ranks& ranks);
-    /// Returns the bytes of these meshes.
+    /// Returns the size of the shared meshes, in bytes.
     [[nodiscard]] std::uint64_t shared_bytes() const { return shared_bytes_; }
 
 private:
     [[nodiscard]] bool is_deforming(std::size_t collider) const { return moving_.deforming().is_mesh(collider); }
-    /// Calls visit(world) for the world at rest and for that of each frame.
+    /// Calls visit(world) for the collision world at rest and for the collision world of each moving frame.
     template <class Visit>
     void visit_worlds(const Visit& visit) const;
     [[nodiscard]] std::uint64_t computed_hash() const;
@@ -82,14 +85,14 @@ private:
     std::shared_ptr<CollisionWorld> world_;
     std::shared_ptr<FrameTree> frames_;
     MovingColliders moving_;
-    mutable std::optional<std::uint64_t> hash_;  // once it is known; it does not change
+    mutable std::optional<std::uint64_t> hash_;  // set by the first call of hash(), then constant
     std::uint64_t shared_bytes_ = 0;
 };
 
 /// Returns true if a stored position is within the range of the arithmetic.
 [[nodiscard]] bool is_in_range(const Vec3& position);
 
-/// Returns true if no surface intersects the closed segment. Exact.
+/// Returns true if no surface intersects the closed segment. The test is exact.
 [[nodiscard]] bool is_clear(const CollisionWorld& world, ContactScratch& scratch, const Vec3& from, const Vec3& to);
 
 }  // namespace ricochet

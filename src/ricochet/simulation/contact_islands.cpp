@@ -13,7 +13,7 @@ Box3 box_within_reach(const ContactIslandMember& member) {
     return ball_box(member.moving->state.position, member.radius + member.reach);
 }
 
-/// Records the path of a member. After its end the member stays at rest until the end of the step.
+/// Records the path of a member. A member whose path ends early stays at rest until the end of the step.
 void keep_path(IslandMember& member, const ForceInput& from, const std::vector<FlownPiece>& flown) {
     member.trajectory = flown;
     member.swept = ball_box(from.position, member.radius());
@@ -38,8 +38,8 @@ bool ContactIslands::begins_as_contact_island(const std::vector<IslandMember>& m
                                           [](const IslandMember& member) { return member.moving.id; });
 }
 
-/// A plan has a single restitution for all connected contacts. Islands without energy loss are therefore planned only
-/// if their impacts become too many, with every method.
+/// Returns limits that depend on the energy loss of impacts. A plan uses a single restitution for all connected
+/// contacts. With every method, islands without energy loss are therefore planned only if they have too many impacts.
 ImpactLimit ContactIslands::impacts_before(const std::vector<IslandMember>& members) const {
     ImpactLimit limit;
     if (!parts_.may_be_contact_island()) return limit;
@@ -52,7 +52,7 @@ ImpactLimit ContactIslands::impacts_before(const std::vector<IslandMember>& memb
     return limit;
 }
 
-/// Returns spare memory, or new memory if there is none. Islands in parallel have one each.
+/// Returns spare working memory, or new working memory if none is spare. Islands that run in parallel do not share it.
 std::unique_ptr<ContactIslands::Work> ContactIslands::acquire_work() {
     const std::lock_guard lock(spare_mutex_);
     if (spare_.empty()) return std::make_unique<Work>(parts_.response.rules(), parts_.materials);
@@ -81,14 +81,14 @@ void ContactIslands::find_pairs(std::span<const IslandMember> members, Work& wor
     work.near.find(members, work.boxes);
 }
 
-/// Finds pairs again after some members have a larger reach. changed: their numbers, ascending.
+/// Updates the pairs after the reach of some members has grown. changed: indices of these members, ascending.
 void ContactIslands::find_pairs(Work& work, std::span<const std::uint32_t> changed) {
     for (const std::uint32_t i : changed) work.boxes[i] = box_within_reach(work.members[i]);
     work.near.update(work.boxes, changed);
 }
 
-/// Enlarges the reach of members near others with a large reach, because those may push them. The first plan is then
-/// usually the last. Returns the changed members, ascending.
+/// Enlarges the reach of a member if a neighbour has a much larger reach, because the neighbour may push the member.
+/// The first plan is then usually sufficient. Returns the indices of the changed members, ascending.
 std::vector<std::uint32_t> ContactIslands::expect_reactions(Work& work) {
     struct Sphere {
         double radius;
@@ -99,7 +99,8 @@ std::vector<std::uint32_t> ContactIslands::expect_reactions(Work& work) {
     spheres.reserve(work.members.size());
     for (const ContactIslandMember& member : work.members) spheres.push_back({member.radius, member.reach, 0.0});
     const auto collect = [&](Sphere& sphere, const Sphere& by) {
-        // The reach of a large sphere includes a margin in proportion to its radius, which pushes no small spheres.
+        // The reach of a large sphere includes a margin in proportion to its radius. The margin is subtracted, because
+        // it does not push small spheres.
         const bool is_large = by.radius > kLargeSphere * sphere.radius;
         const double beside = is_large ? kNetworkReach * (by.radius - sphere.radius) : 0.0;
         sphere.loaded = std::max(sphere.loaded, kExpectedPush * (by.reach - beside));
@@ -117,7 +118,7 @@ std::vector<std::uint32_t> ContactIslands::expect_reactions(Work& work) {
     return changed;
 }
 
-/// Plans the island. Repeats the plan if a sphere is pushed beyond its search distance for contacts.
+/// Plans the island. Repeats the plan if it pushes a sphere beyond the sphere's search distance for contacts.
 SolverReport ContactIslands::plan(std::span<const IslandMember> members, Work& work, double duration) const {
     MoveScratch scratch;
     find_pairs(members, work);

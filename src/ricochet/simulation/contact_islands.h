@@ -1,6 +1,6 @@
 /// \file
-/// Private to the simulation: islands of spheres with lasting contacts or with too many impacts. They are planned
-/// together, as one problem of all their contacts (ContactIsland). Then each member moves alone.
+/// Private to the simulation: islands of spheres with lasting contacts or with too many impacts. ContactIsland plans
+/// all contacts of such an island as one problem. Then each member moves alone.
 #pragma once
 
 #include <array>
@@ -20,20 +20,20 @@ namespace ricochet {
 
 class ContactIslands {
 public:
-    /// contacts must outlive it.
+    /// contacts must outlive the object.
     ContactIslands(const PairParts& parts, const LastingContacts& contacts) : parts_(parts), contacts_(contacts) {}
 
     /// Returns true if two members pressed on each other in the last step. The island is then a contact island from the
-    /// start, because they still do.
+    /// start of the step, because such a contact usually lasts.
     [[nodiscard]] bool begins_as_contact_island(const std::vector<IslandMember>& members) const;
     /// Returns the numbers of impacts beyond which an event-driven island becomes a contact island. With every method,
-    /// two spheres that meet only each other in a step do so at their exact time.
+    /// two spheres that collide only with each other in a step collide at the exact time of impact.
     [[nodiscard]] ImpactLimit impacts_before(const std::vector<IslandMember>& members) const;
     /// Moves the members of an island to the end of the step. Several threads may run different islands.
     [[nodiscard]] ContactIslandTrace run(std::vector<IslandMember>& members, const TimeSpan& step);
 
 private:
-    /// Memory for planning an island, kept for the next one.
+    /// Working memory for planning an island, reused for later islands.
     struct Work {
         Work(const ResponseRules& rules, const PairMaterials& materials) : island(rules, materials) {}
         ContactIsland island;

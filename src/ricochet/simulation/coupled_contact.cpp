@@ -1,5 +1,5 @@
-// Coupled particles that meet surfaces or spheres: planning with their contacts, deviations from the plan, and velocity
-// corrections.
+// Coupled particles that collide with surfaces or spheres: support accelerations for the plan, deviations from the
+// plan, and velocity corrections.
 #include <algorithm>
 #include <cstddef>
 #include <span>
@@ -11,8 +11,8 @@
 namespace ricochet {
 namespace {
 
-/// Records the flown path of a response that does not report it. It is assumed to be smooth between the start and the
-/// end.
+/// Records the flown path if the response has not reported it. The path is assumed to be smooth between the start and
+/// the end.
 void note_flown(const Flight& plan, const MovingParticle& moved, std::vector<FlownPiece>& flown) {
     if (!flown.empty()) return;
     const ForceInput& from = plan.start;
@@ -34,7 +34,7 @@ Vec3 impulse_of(std::span<const SurfaceHit> hits) {
     return sum;
 }
 
-/// impulse: of surfaces on the particle, in N s.
+/// impulse: impulse of surfaces on the particle, in N s.
 void ActiveMover::record_deviation(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
                                    std::vector<FlownPiece>& flown, const Vec3& impulse) {
     if (outcome.is_absorbed() || outcome.is_frozen() || outcome.unsimulated_time != 0.0) return;

@@ -16,16 +16,20 @@ namespace {
 /// Members per unit of parallel work.
 constexpr std::size_t kBlock = 256;
 
-/// Most predictions of a step among surfaces before half of it is tried. Local, because kPredictionEnergy decides.
+/// Largest number of support predictions for a step before half of the step is tried. Local, because kPredictionEnergy
+/// decides about the accuracy.
 constexpr int kMostForesights = 16;
 
-/// Predictions in a row without improvement after which the iteration stops. Local, because the best one is used.
+/// Number of predictions in a row without improvement after which the iteration stops. Local, because the best
+/// prediction is used.
 constexpr int kMostWorse = 3;
 
-/// Ratio of errors below which half of a step counts as better. Local: a rule of the search for the best prediction.
+/// Ratio of the residuals of half a step and a whole step below which the half counts as better. Local: a rule of the
+/// search for the best prediction.
 constexpr double kWorthCutting = 0.5;
 
-/// Halvings in a row without improvement after which no more are tried. Local, because the best prediction is used.
+/// Number of halvings in a row without improvement after which the search stops. Local, because the best prediction is
+/// used.
 constexpr int kMostVainCuts = 2;
 
 /// Tolerances of the solution of a step.
@@ -33,12 +37,14 @@ struct Closeness {
     double tolerance;         ///< of Newton's method
     double least_compliance;  ///< of friction, see PlannedContacts::find()
 };
-/// Before the supports are known. Friction with a larger yield is found in fewer iterations.
+/// Tolerances while the supports are not known yet. A larger compliance of friction needs fewer iterations.
 constexpr Closeness kRough{kRoughNewtonTolerance, kRoughFrictionYield};
-/// After that. Ten times this yield was seen to stretch springs of 1e8 N/m by 0.8 J in a step.
+/// Tolerances after the supports are known. With ten times this compliance of friction, springs of 1e8 N/m gained 0.8 J
+/// in a step.
 constexpr Closeness kClose{kNewtonTolerance, kFrictionYield};
 
-/// Returns the displacements of members under the supports found for a step, minus the predicted ones, in m.
+/// Returns errors of displacements, in m. The error of a member is its displacement under the supports found for a
+/// step, minus its predicted displacement.
 std::vector<Vec3> missed_paths(const SystemStep& step, std::span<const SupportConstraints> found) {
     std::vector<Vec3> missed(found.size());
     for (std::size_t k = 0; k < found.size(); ++k) {
@@ -47,7 +53,7 @@ std::vector<Vec3> missed_paths(const SystemStep& step, std::span<const SupportCo
     return missed;
 }
 
-/// Returns the energy, in J, by which these differences stretch springs.
+/// Returns the energy, in J, that springs gain if the errors of displacements stretch them.
 double residual_energy(const ParticleSystem& system, const SystemStep& step, std::span<const Vec3> missed) {
     double sum = 0.0;
     for (const ParticleSystem::Bond& bond : system.bonds()) {
@@ -90,7 +96,7 @@ CoupledMotion::CoupledMotion(std::vector<Spring> springs, std::vector<ParticlesF
 
 void CoupledMotion::bind(const Particles& particles) { springs_.bind(particles.id); }
 
-/// Particles spawned inside the step join with the next one.
+/// Returns the particles that are planned together. Particles spawned inside a step become members in the next step.
 std::vector<std::uint32_t> CoupledMotion::members_of(const Particles& particles, double time) const {
     if (!solver_ && mutual_.empty()) return springs_.coupled();
     std::vector<std::uint32_t> members;
@@ -105,8 +111,9 @@ std::vector<std::uint32_t> CoupledMotion::members_of(const Particles& particles,
     return members;
 }
 
-/// Returns the accelerations by which contacts support members at the start of the step. They are expected to last.
-/// Otherwise other members would feel a supported member fall through its support, and the plan could not rest.
+/// Returns the accelerations by which contacts support members at the start of the step. These accelerations are
+/// assumed to last for the whole step. Without them, a supported member would fall through its support in the plan.
+/// Other members would feel this fall, and the system could not come to rest.
 std::vector<Vec3> CoupledMotion::expected_reactions(const Particles& particles,
                                                     const ContactAcceleration& contact_acceleration) const {
     const std::vector<Vec3>& x = system_.positions();
@@ -146,7 +153,8 @@ double CoupledMotion::plan(const Particles& particles, double time, double durat
 
 void CoupledMotion::plan_flights(const SystemStep& step) {
     const bool holds = holds_coupling(integrator_.kind);
-    const IntegratorKind kind = solver_ ? IntegratorKind::rk4 : integrator_.kind;  // a solver's path: the cubic
+    const IntegratorKind kind = solver_ ? IntegratorKind::rk4 : integrator_.kind;  // the path of a custom solver is a
+                                                                                   // cubic
     coupled_.resize(system_.size());
     deviations_.reset(system_.size(), kind);
     parallel_for_blocks(system_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -155,8 +163,8 @@ void CoupledMotion::plan_flights(const SystemStep& step) {
                                 : CoupledMember(system_, flights_, k, mutual_pull(step, k));
             flights_[k] = planned_flight(kind, system_, step, k);
             flights_[k].start.coupling = &coupled_[k];
-            // A custom solver may apply more than springs, so its flights are not stepped again. Their velocities
-            // belong to the path.
+            // A custom solver may apply other forces than springs, so its flights are not integrated again. Velocities
+            // along them are derivatives of the path.
             flights_[k].steps_again = flights_[k].steps_again || !(holds || solver_);
         }
     });
@@ -167,12 +175,13 @@ MutualPull CoupledMotion::mutual_pull(const SystemStep& step, std::size_t k) con
     return {step.mutual_start[k], (step.mutual_end[k] - step.mutual_start[k]) / step.duration, system_.time()};
 }
 
-/// Returns the shortest substep, in s. It must advance the clock and the particles.
+/// Returns the shortest allowed substep, in s. A substep must advance the clock and the particles.
 double CoupledMotion::shortest_part() const {
     return std::max(kShortestSubstep * time_step_, 2.0 * ulp(system_.time()));
 }
 
-/// Takes the rest of the step at once if all its sub-steps are used up, and counts the step as unsolved.
+/// Returns a substep whose equations do not include supports. If the step has used up all its substeps, the substep
+/// covers the rest of the step, which then counts as unsolved.
 SystemStep CoupledMotion::stepped(double duration) {
     if (!solver_) {
         const bool is_spent = ++substeps_ > kMostSubsteps;
@@ -196,10 +205,10 @@ SystemStep CoupledMotion::stepped(double duration) {
     return step;
 }
 
-/// Returns a step with the supports in its equations. If they do not settle, half of the duration is tried, because
-/// springs then carry less from one member to the other. The next substep begins with the duration that settled last.
-/// If half of the duration is no better, the step is taken as it is and counts as unsolved. An example is a point on an
-/// edge, which each of the two faces leads to the other.
+/// Returns a step whose equations include the supports. If the supports do not settle, half of the duration is tried,
+/// because springs then transmit less motion between members. The next substep starts with the duration that settled
+/// last. If half of the duration is not better, the step is accepted and counts as unsolved. An example is a point on
+/// an edge, because each of the two faces leads the point to the other face.
 SystemStep CoupledMotion::among_surfaces(double duration, const Particles& particles, const PlannedContacts& contacts) {
     std::vector<Vec3> spins;
     for (const std::uint32_t i : system_.members()) spins.push_back(particles.spin[i]);
@@ -227,8 +236,9 @@ SystemStep CoupledMotion::among_surfaces(double duration, const Particles& parti
     return step;
 }
 
-/// Predicts the supports in a step. They follow from the step and decide it, so the step is solved again until it
-/// agrees with the prediction. Only then is it solved closely.
+/// Predicts the supports in a step. The supports depend on the motion in the step, and the motion depends on the
+/// supports. The step is therefore solved repeatedly until it agrees with the prediction, and only then to the close
+/// tolerances.
 CoupledMotion::SupportPrediction CoupledMotion::predict(double duration, std::span<const Vec3> spins,
                                                         const PlannedContacts& contacts) const {
     SupportPrediction best;
@@ -261,7 +271,7 @@ CoupledMotion::SupportPrediction CoupledMotion::predict(double duration, std::sp
         if (has_settled) residual += residual_energy(system_, step, contacts.bends(system_, step, found));
         ++worse;
         if (has_settled || best.held.empty() || residual < best.residual) {
-            const double lost = lost_in(step);  // can be negative if surfaces throw members back
+            const double lost = lost_in(step);  // can be negative if members rebound from surfaces
             const bool is_true = has_settled && lost >= -negligible && residual <= negligible + kPredictionLoss * lost;
             best = {step, held, residual, is_true, is_close};
             worse = 0;

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: coupled particles, which are planned together before each moves alone.
+/// Private to the simulation: coupled particles. They are planned together, and then each of them moves alone.
 #pragma once
 
 #include <cstdint>
@@ -19,23 +19,24 @@
 
 namespace ricochet {
 
-/// Returns the kinetic energy of the members of a system with these velocities, in J.
+/// Returns the kinetic energy, in J, of the members of a system at the given velocities.
 [[nodiscard]] double kinetic_energy(const ParticleSystem& system, std::span<const Vec3> velocities);
 
-/// Adds up the energy that a method of integration creates. Energy comes from the start, from forces and from walls.
-/// More is an error of the method, and far more makes the motion nonsense.
+/// Adds up the energy that an integration method creates. The initial state, forces and surfaces are valid sources of
+/// energy. Any further energy is an error of the method. If the error is large, the motion has diverged.
 class EnergyWatch {
 public:
-    /// Both must outlive it. knows_implicit: a report may advise implicit_euler.
+    /// system must outlive the object. knows_implicit: true if an error message may recommend implicit_euler.
     EnergyWatch(const ParticleSystem& system, const SpringNetwork& springs, bool knows_implicit);
 
     /// Returns the energy of the members and their springs, in J.
     [[nodiscard]] double of(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities) const;
-    /// Returns an energy, in J, that rounding explains.
+    /// Returns the largest energy, in J, that can result from rounding.
     [[nodiscard]] double least() const { return least_; }
-    /// Takes a planned step of the system. Throws DivergedError if the method has created too much energy.
+    /// Adds the energies of a planned step of the system. Throws DivergedError if the method has created too much
+    /// energy.
     void watch(const SystemStep& step);
-    /// Saves or restores the sums; a: an archive of core/binary_archive.h.
+    /// Saves or restores the sums. a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a) {
         a(given_), a(gained_), a(after_plan_), a(is_watching_);
@@ -47,24 +48,25 @@ private:
     const ParticleSystem& system_;
     bool knows_implicit_;
     double least_;
-    // In J: energy from the start, from forces and from walls, and energy that the method has created.
+    // Energies in J: from the initial state, forces and surfaces (given_), and created by the method (gained_).
     double given_ = 0.0;
     double gained_ = 0.0;
     double after_plan_ = 0.0;
     bool is_watching_ = false;
 };
 
-/// Motion of particles that are coupled by springs, by forces between particles or by a custom solver. In every step
-/// plan() computes the paths of all members without surfaces. Then each member moves along its flight and bounces.
-/// correct_velocities() and settle() process the results.
+/// Motion of particles that are coupled by springs, by forces between particles or by a custom solver. In every step,
+/// plan() computes the paths of all members as if they hit no surfaces. Then each member moves along its flight and
+/// bounces off surfaces. correct_velocities() and settle() process the results.
 class CoupledMotion {
 public:
     /// Settings of the run.
     struct Terms {
         double time_step = 0.0;       ///< s
-        bool knows_implicit = false;  ///< true if implicit_euler may be advised if the motion diverges
+        bool knows_implicit = false;  ///< true if an error message may recommend implicit_euler when the motion
+                                      ///< diverges
     };
-    /// Throws InputError for invalid springs. forces must outlive it.
+    /// Throws InputError for invalid springs. forces must outlive the object.
     CoupledMotion(std::vector<Spring> springs, std::vector<ParticlesForceEntry> mutual, SystemSolver solver,
                   const ForceField& forces, const Integrator& integrator, const Terms& terms);
 
@@ -72,31 +74,32 @@ public:
     [[nodiscard]] bool is_active() const { return !is_disabled_ && (solver_ || !springs_.empty() || !mutual_.empty()); }
     /// Disables coupled motion, because another stage moves the particles. Springs are kept only for restored states.
     void disable() { is_disabled_ = true; }
-    /// Function that returns the acceleration, in m/s^2, that is left of `pull` in the present contact of particle i.
+    /// Function that returns the acceleration, in m/s^2, of particle i in its present contact. `pull` is its
+    /// acceleration without the contact, in m/s^2.
     using ContactAcceleration = std::function<Vec3(std::size_t i, const Vec3& pull)>;
 
-    /// Must be called whenever particles were added or removed.
+    /// Must be called after particles have been added or removed.
     void bind(const Particles& particles);
-    /// Plans the members' paths from a time on, for at most `duration` seconds. Returns the planned duration, in s.
-    /// contacts: predicts the supports of members for the implicit method. contact_acceleration: used by methods that
-    /// follow forces as they vary. Throws DivergedError if the motion diverges.
+    /// Plans the paths of the members from a time, in s, for at most `duration` seconds. Returns the planned duration,
+    /// in s. contacts: predicts the supports of members for the implicit method. contact_acceleration: used by methods
+    /// that do not keep coupling forces constant in a step. Throws DivergedError if the motion diverges.
     double plan(const Particles& particles, double time, double duration, const PlannedContacts& contacts,
                 const ContactAcceleration& contact_acceleration);
 
-    /// Sets a function that plan() calls between the iterations of the implicit method. Its exceptions leave plan(). An
-    /// empty function ends the calls.
+    /// Sets a function that plan() calls between the iterations of the implicit method. plan() does not catch the
+    /// exceptions of the function. An empty function ends the calls.
     void call_between(std::function<void()> between) { between_ = std::move(between); }
 
     /// Returns true if particle i is a member.
     [[nodiscard]] bool holds(std::size_t i) const { return i < slots_.size() && slots_[i] != kNoSlot; }
     /// Returns the planned flight of a member, or null for other particles.
     [[nodiscard]] const Flight* flight_of(std::size_t i) const { return holds(i) ? &flights_[slots_[i]] : nullptr; }
-    /// Returns the action of the others on particle i after a bounce, or null if i is no member.
+    /// Returns the coupling of particle i to other particles after a bounce, or null if particle i is not a member.
     [[nodiscard]] const Coupling* coupling_of(std::size_t i) const {
         return holds(i) ? flights_[slots_[i]].start.coupling : nullptr;
     }
     /// Returns true if the planned flight of member i contains expected reactions of surfaces. Only the other members
-    /// use that flight. The member itself meets its surfaces.
+    /// use this flight, because member i itself collides with its surfaces.
     [[nodiscard]] bool is_planned_in_contact(std::size_t i) const {
         return holds(i) && system_.expected_reaction(slots_[i]) != Vec3{};
     }
@@ -104,14 +107,14 @@ public:
     [[nodiscard]] bool wants_deviation_of(std::size_t i) const {
         return holds(i) && flights_[slots_[i]].start.coupling->varies();
     }
-    /// Records the flown path of member i, and its velocity change by surfaces, in m/s. Several threads may call it for
-    /// different members.
+    /// Records the flown path of member i, and its velocity change by surfaces, in m/s. Several threads may call this
+    /// function for different members.
     void add_deviation(std::size_t i, std::span<const FlownPiece> flown, const Vec3& velocity_change) {
         deviations_.record(slots_[i], flown, velocity_change);
     }
 
-    /// Records a member that was planned together with its contacts. Its forces keep their values at the start.
-    /// velocity_change: by contacts, in m/s.
+    /// Records a member that was planned together with its contacts. The forces on the member keep their values from
+    /// the start of the step. velocity_change: velocity change by contacts, in m/s.
     void record_planned_contact(std::size_t i, const Vec3& velocity_change) {
         deviations_.record_at_start(slots_[i], velocity_change);
     }
@@ -126,14 +129,14 @@ public:
         std::optional<std::uint32_t> runaway;  ///< first particle that a correction has accelerated beyond kMaxSpeed
         double runaway_speed = 0.0;            ///< m/s
     };
-    /// Corrects the velocities of members in flight after the moves, because springs and forces follow the actual
-    /// paths. Returns the corrections of members in contact.
+    /// Corrects the velocities of members in flight after the moves, because the actual paths of other members
+    /// determine springs and forces. Returns the corrections of members in contact.
     [[nodiscard]] Correction correct_velocities(Particles& particles);
-    /// Ends a step: counts it if a substep was not solved, and breaks overstretched springs.
+    /// Ends a step. Counts the step as unsolved if one of its substeps was not solved. Breaks overstretched springs.
     void settle(const Particles& particles);
 
-    /// Saves or restores the state between steps; a: an archive of core/binary_archive.h. bind() must be called after
-    /// it.
+    /// Saves or restores the state between steps. a: an archive of core/binary_archive.h. bind() must be called after a
+    /// state is restored.
     template <class Archive>
     void archive(Archive& a) {
         springs_.archive(a);
@@ -143,10 +146,11 @@ public:
     }
 
     [[nodiscard]] const SpringNetwork& springs() const { return springs_; }
-    /// Returns the energy of the forces between particles, in J, or nothing if one of them has no potential.
+    /// Returns the potential energy of the forces between particles, in J, or nothing if one of the forces has no
+    /// potential.
     [[nodiscard]] std::optional<double> mutual_energy(const Particles& particles, double time) const;
-    /// Returns the number of unsolved steps. In these, implicit equations were not solved to the tolerance, the
-    /// predicted supports did not settle, or dormand_prince could not keep its tolerance.
+    /// Returns the number of unsolved steps. In an unsolved step, implicit equations were not solved to the tolerance,
+    /// predicted supports did not settle, or dormand_prince exceeded its tolerance.
     [[nodiscard]] std::uint64_t unsolved_steps() const { return unsolved_steps_; }
 
 private:
@@ -162,7 +166,7 @@ private:
     struct SupportPrediction {
         SystemStep step;
         std::vector<SupportConstraints> held;
-        double residual = 0.0;  // J, that springs get by errors of the prediction
+        double residual = 0.0;  // energy that springs gain from errors of the prediction, in J
         bool has_settled = false;
         bool is_close = false;  // solved to kNewtonTolerance
     };
@@ -179,15 +183,15 @@ private:
     Integrator integrator_;
     double time_step_;  // s
     ParticleSystem system_;
-    std::vector<std::uint32_t> slots_;    // of every particle: its index among the members, or kNoSlot
+    std::vector<std::uint32_t> slots_;    // per particle: its index among the members, or kNoSlot
     std::vector<Flight> flights_;         // of the members
     std::vector<CoupledMember> coupled_;  // coupling of each flight
-    PlanDeviations deviations_;           // of the members, from the flights
-    double first_try_ =
-        0.0;  // s, of an adaptive method, or of the implicit one if supports settle only in substeps; 0: not known
+    PlanDeviations deviations_;           // deviations of the members from their flights
+    double first_try_ = 0.0;  // s, first duration that an adaptive method tries, or the implicit method if supports
+                              // need substeps; 0: unknown
     std::uint64_t unsolved_steps_ = 0;
-    bool is_unsolved_ = false;    // a substep of the present step
-    std::uint32_t substeps_ = 0;  // of an adaptive method in the present step
+    bool is_unsolved_ = false;    // true if a substep of the present step is unsolved
+    std::uint32_t substeps_ = 0;  // number in the present step, for an adaptive method
     bool is_disabled_ = false;
     std::function<void()> between_;
     EnergyWatch energy_;

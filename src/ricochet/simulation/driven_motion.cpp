@@ -14,7 +14,7 @@
 namespace ricochet {
 namespace {
 
-/// Returns the power, in W, that a wrench (N, N m) about its moment_center() gives a body.
+/// Returns the power, in W, of a wrench (N, N m) on a body. The moment is about the body's moment_center().
 double power_of(const DrivenBody& body, const Wrench& load) {
     const double turning = dot(load.moment, body.angular_velocity());
     return body.description().joint == JointKind::hinge ? turning : turning + dot(load.impulse, body.velocity());
@@ -66,7 +66,7 @@ double DrivenMotion::work_by_yielding(const ColliderLoad& load) const {
 }
 
 double DrivenMotion::next_substep_end(double begin, double end) const {
-    // Local: it prevents a much shorter last substep.
+    // Local: this factor prevents a last substep that is much shorter than the others.
     constexpr double kAboutAll = 1.1;
     return end - begin > kAboutAll * longest_part_ ? begin + longest_part_ : end;
 }
@@ -90,7 +90,8 @@ std::vector<double> DrivenMotion::shares_of(std::span<const ColliderLoad> previe
 }
 
 double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
-    // A resting particle lands on its body again, slowly, after every change of the body's velocity.
+    // Slow impacts are ignored, because a resting particle lands on its body again after every change of the body's
+    // velocity.
     std::erase_if(preview, [&](const ColliderLoad& load) {
         return !load.impact || load.approach <= slow_ || !loads_on_bodies().body_of(load);
     });
@@ -120,8 +121,9 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
                        changes_velocity(load, before[body].wrench(), tallies[body], contacts_[body]);
             });
         if (is_too_much) return end_of(before, preview[first - 1].time, preview[first].time);
-        // A particle that waits for a body keeps its momentum but does not move along it. The resulting couple turns
-        // the body, by much if the particle is heavy.
+        // A particle that waits for a body moves with the body's surface and not in the direction of its own momentum.
+        // A couple on the body then conserves the angular momentum. The couple of a heavy particle turns the body by
+        // much, so the substep ends soon.
         if (is_heavy && parts_ < kManyParts) {
             const double until = next < preview.size() ? preview[next].time : end;
             return std::min(end, soon_after_impact(preview[first].time, until));
@@ -131,29 +133,29 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
 }
 
 RestingLoad DrivenMotion::resting_load_on(std::size_t body, std::span<const ColliderLoad> preview, double until) const {
-    // A load at the end of the plan may be recorded later by a rounding.
+    // At the end of the plan, rounding may give a load a slightly later time. All loads of the preview then count.
     const bool is_whole = until >= planned_end();
     return loads_on_bodies().resting_load_on(body, preview, is_whole ? std::numeric_limits<double>::infinity() : until);
 }
 
-/// Returns the part of a duration after which the substep must end because the resting load on a body ends. The load
-/// then covers the time before.
+/// Returns the fraction of a duration after which the substep must end, because the resting load on a body ends. The
+/// load then acts during the whole shortened substep.
 double DrivenMotion::substep_with_load(std::size_t body, std::span<const ColliderLoad> preview, double begin,
                                        double duration) const {
     const double part = (loads_on_bodies().left_at(body, preview) - begin) / duration;
     return part > kLoadEndMargin && part < 1.0 - kLoadEndMargin ? part : 1.0;
 }
 
-/// Returns the velocity change, in m/s, of a body by a wrench (N, N m) in a time, in s. For a rotation it is the change
-/// at the radius of gyration.
+/// Returns the velocity change, in m/s, that a wrench (N, N m) causes on a body in a duration, in s. For a rotation it
+/// is the change at the radius of gyration.
 double DrivenMotion::change_by(std::size_t body, const Wrench& load, double duration) const {
     const Wrench whole{duration * load.impulse, duration * load.moment};
     return std::sqrt(2.0 * bodies_[body].quadratic_energy(whole) / bodies_[body].description().mass);
 }
 
-/// Returns the end of the substep, in s, at most `end`, as limited by particles that wait for bodies. A particle that
-/// waits for a body after an impact keeps its momentum but does not move along it. The resulting couple turns the body
-/// in proportion to the time.
+/// Returns the end of the substep, in s, limited to `end` and by particles that wait for bodies. After an impact, a
+/// particle that waits for a body moves with the body's surface and not in the direction of its own momentum. A couple
+/// on the body conserves the angular momentum. It turns the body in proportion to the time.
 double DrivenMotion::end_of_waits(std::span<const ColliderLoad> preview, double end) const {
     const double begin = paths_.planned(0).begin;
     for (std::size_t i = 0; i < preview.size(); ++i) {
@@ -171,7 +173,7 @@ double DrivenMotion::end_of_waits(std::span<const ColliderLoad> preview, double 
     return end;
 }
 
-/// Returns the velocity change of a body, in m/s, that need not be planned.
+/// Returns the largest velocity change of a body, in m/s, that need not be planned.
 double DrivenMotion::most_change(std::size_t body) const {
     const double speed = std::sqrt(2.0 * bodies_[body].kinetic_energy() / bodies_[body].description().mass);
     return std::max(slow_, kMostBodyChange * speed);
@@ -179,7 +181,8 @@ double DrivenMotion::most_change(std::size_t body) const {
 
 DrivenMotion::Fit DrivenMotion::fit_of(std::size_t body, const RestingLoad& resting_load, double duration) const {
     const Wrench& planned = loads_[body];
-    // If impacts have cut a substep short, a slow impact is no lasting force.
+    // Divides by a minimum duration, because in a substep that impacts have shortened, a slow impact must not count as
+    // a lasting force.
     const double lasts = std::max(duration, kShortestLoad * shortest_part_);
     const Wrench back{resting_load.wrench.impulse / lasts, resting_load.wrench.moment / lasts};
     const Wrench lacks{back.impulse - planned.impulse, back.moment - planned.moment};
@@ -191,8 +194,8 @@ DrivenMotion::Fit DrivenMotion::fit_of(std::size_t body, const RestingLoad& rest
     return {back, change > 1.1 * most ? most / change : 1.0, lacking <= kLoadResidual * most, lacking <= most};
 }
 
-/// Returns true if the substep must end at a time, in s, while a large load rests on a body and is recorded later. The
-/// part of the load until then is not known.
+/// Returns true if the substep must end at a time, in s, while a large load rests on a body and is recorded only after
+/// that time. The share of the load before that time is then unknown.
 bool DrivenMotion::is_cut_in_contact(std::span<const ColliderLoad> preview, double end) const {
     if (end >= planned_end()) return false;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -206,7 +209,7 @@ bool DrivenMotion::is_cut_in_contact(std::span<const ColliderLoad> preview, doub
     return false;
 }
 
-/// Returns false if bodies react otherwise than in the preview.
+/// Begins a round of planning. Returns false if bodies react differently from the preview.
 bool DrivenMotion::begin_round(std::span<const ColliderLoad> preview, double end, int round) {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         if (round % kMostLoadRounds == 0) relaxations_[k].begin_search();
@@ -239,7 +242,7 @@ bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut,
     const bool can_shorten = duration > 1.5 * shortest_part_;
     const int most_rounds = can_shorten ? kMostLoadRounds : kFewLoadRounds;
     const bool is_last = round % kMostLoadRounds >= most_rounds - 1;
-    double longest = 1.0;  // part of the duration
+    double longest = 1.0;  // fraction of the duration
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         const RestingLoad resting_load = resting_load_on(k, preview, end);
         const Fit fit = fit_of(k, resting_load, duration);
@@ -268,8 +271,7 @@ bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut,
     return true;
 }
 
-/// Returns true if a planned load and the load of the preview together give a body more energy than particles lose to
-/// it.
+/// Returns true if a planned load and the load of the preview together give a body more energy than the particles lose.
 bool DrivenMotion::gains_energy(std::size_t body, std::span<const ColliderLoad> preview, double end) const {
     const Wrench& planned_load = paths_.load(body);
     if (planned_load.impulse == Vec3{} && planned_load.moment == Vec3{}) return false;
@@ -294,7 +296,7 @@ bool DrivenMotion::gains_energy(std::size_t body, std::span<const ColliderLoad> 
     return gained > kMostLoadGain * (bodies_[body].kinetic_energy() + comes.kinetic_energy());
 }
 
-/// Keeps the plan up to a time, in s.
+/// Accepts the plan up to a time, in s.
 void DrivenMotion::accept(std::span<const ColliderLoad> preview, double end) {
     const double duration = end - paths_.planned(0).begin;
     for (std::size_t k = 0; k < bodies_.size(); ++k) relaxations_[k].end_substep(resting_load_on(k, preview, end));
@@ -302,9 +304,9 @@ void DrivenMotion::accept(std::span<const ColliderLoad> preview, double end) {
     limit_next_substep(duration);
 }
 
-/// Plans bodies as if nothing rested on them, if no load fits however short the substep is. An example is a body that
-/// something much heavier jams. Each impact is then resolved with the body's inverse mass. Returns false if there are
-/// no such bodies.
+/// Plans bodies without resting loads if no load fits even the shortest substep. An example is a body that a much
+/// heavier particle jams. Each impact is then resolved with the body's inverse mass. Returns false if no body must be
+/// planned in this manner.
 bool DrivenMotion::plan_without_loads(std::span<const ColliderLoad> preview, double begin, double end) {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         if (!gains_energy(k, preview, end)) continue;
@@ -315,8 +317,8 @@ bool DrivenMotion::plan_without_loads(std::span<const ColliderLoad> preview, dou
     return has_given_up_;
 }
 
-/// Limits the next substep, so that substeps grow gradually. A resting load shows changes only by its mean, which may
-/// be small in a substep in which the load comes and goes.
+/// Limits the next substep, so that substeps grow gradually. Only the mean of a resting load over a substep is known.
+/// The mean can be small in a long substep in which a load comes and goes.
 void DrivenMotion::limit_next_substep(double duration) {
     // Local: a rule of this step control, whose substeps are checked.
     constexpr double kGrowth = 2.0;
@@ -342,7 +344,8 @@ void DrivenMotion::follow(std::span<const ColliderLoad> loads) {
         const double lain = path.end - path.begin;
         contacts_[k].add(touching[k]);
         contacts_[k].taken += wrenches[k];
-        // If the search for loads was given up, the loads for the next plan differ from the loads of the path.
+        // Uses the loads of the path. They differ from the loads for the next plan if the search for loads was given
+        // up.
         const Wrench& load = paths_.load(k);
         contacts_[k].taken += {-lain * load.impulse, -lain * load.moment};
         bodies_[k].follow(path, load, wrenches[k]);
@@ -365,7 +368,7 @@ bool DrivenMotion::is_sound(double time) const {
                               std::is_sorted(ids.begin(), ids.end());
         if (!is_whole) return false;
     }
-    // A substep that does not advance the time would be repeated without end.
+    // A substep that does not advance the time would be repeated forever.
     return resting_time_ >= 0.0 && std::isfinite(resting_time_) && time + longest_part_ > time;
 }
 

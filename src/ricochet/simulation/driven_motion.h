@@ -1,10 +1,10 @@
 /// \file
-/// Private to the simulation: the bodies that impulses of particles move, and their planned paths.
+/// Private to the simulation: dynamic bodies, which impulses of particles move, and their planned paths.
 ///
-/// In a substep the bodies move as planned at its start, as if nothing hit them. Each impact is resolved with the
-/// inverse mass and inertia of its body. At the end of the substep a body takes all its impulses, in the order of
-/// particles. Many impulses together could add energy, so the substep is cut before the first impact that would. A
-/// preview gives that time.
+/// In a substep, bodies move along paths that are planned at its start, as if nothing hit them. Each impact is resolved
+/// with the inverse mass and inertia of its body. At the end of the substep, all impulses are applied to the body, in
+/// the order of particles. Many impulses together could add energy. The substep therefore ends before the first impact
+/// that would add energy. A preview of the particles' motion gives the time of this impact.
 #pragma once
 
 #include <algorithm>
@@ -30,38 +30,41 @@ namespace ricochet {
 /// Paths of bodies in the frame tree, and the mobility of their colliders. All bodies have the same substeps.
 class BodyPaths {
 public:
-    /// frames: contains the frames of the bodies. colliders: null if no collider moves. All must outlive it.
+    /// frames: contains the frames of the bodies. colliders: empty if no collider moves. All arguments must outlive the
+    /// object.
     BodyPaths(const std::vector<DrivenBody>& bodies, FrameTree* frames, MovingColliders& colliders,
               const ForceField& forces);
 
-    /// Returns the paths of a body, as far back as they may be needed. The last one is planned.
+    /// Returns the paths of a body, from the oldest path that may still be needed to the planned path.
     [[nodiscard]] const std::vector<BodyPath>& of(std::size_t body) const { return frames_->paths(frame_of_[body]); }
     [[nodiscard]] const BodyPath& planned(std::size_t body) const { return of(body).back(); }
-    /// Returns the load in the planned path of a body, in N and N m.
+    /// Returns the load that the planned path of a body contains, in N and N m.
     [[nodiscard]] const Wrench& load(std::size_t body) const { return loads_[body]; }
 
-    /// Plans the paths over [begin, end], in s, with a load on each body. They replace a plan that was not followed.
+    /// Plans the paths over [begin, end], in s, with a load on each body. The new paths replace a plan that was not
+    /// followed.
     void plan(const std::vector<Wrench>& loads, double begin, double end);
     /// Ends the plan at an earlier time, in s.
     void end_at(double time);
     /// Marks the plan as followed.
     void set_followed() { is_planned_ = false; }
-    /// Selects the substep that begins at a time, in s, for particles that move through this step later. Returns its
-    /// end, in s.
+    /// Selects the substep that begins at a time, in s, for children, which repeat the substeps of this step. Returns
+    /// the end of the substep, in s.
     double repeat(double time);
-    /// Paths before a time, in s, are no longer needed.
+    /// Sets the time, in s, before which paths are no longer needed.
     void set_oldest(double time) { oldest_ = time; }
 
-    /// Sets factors on the bodies' inverse masses and inertias. Impacts at one time, or too near in time to be told
-    /// apart, share their effect: the body reacts to each of them as to all together. An empty list: all are 1.
+    /// Sets factors on the inverse masses and inertias of the bodies. Impacts that are simultaneous, or too close in
+    /// time to be separated, share their effect. The body then reacts to each of these impacts as if all of them acted
+    /// together. An empty list sets all factors to 1.
     void set_shares(std::vector<double> shares);
     [[nodiscard]] const std::vector<double>& shares() const { return shares_; }
-    /// Returns tallies without impacts for the planned paths.
+    /// Returns one empty impact tally per body, for its planned path.
     [[nodiscard]] std::vector<ImpactTally> no_impacts() const;
-    /// Returns a view of loads. slow: speed of impacts that begin contact, in m/s.
+    /// Returns a view of loads. slow: largest speed of impacts that begin lasting contact, in m/s.
     [[nodiscard]] LoadsOnBodies loads_on_bodies(double slow) const { return {bodies_, collider_of_, colliders_, slow}; }
 
-    /// Saves or restores the paths; a: an archive of core/binary_archive.h.
+    /// Saves or restores the paths. a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a) {
         for (const std::size_t frame : frame_of_) {
@@ -74,7 +77,7 @@ public:
     void archive_plan(Archive& a) {
         a(is_planned_);
     }
-    /// Returns false for a body and paths that no run leaves behind.
+    /// Returns false if no run can produce the present state and paths of a body.
     [[nodiscard]] bool is_sound(std::size_t body) const;
 
 private:
@@ -82,54 +85,56 @@ private:
 
     const std::vector<DrivenBody>& bodies_;
     std::vector<std::size_t> frame_of_;  // of each body
-    std::vector<BodyId> collider_of_;    // of each body: its colliders
+    std::vector<BodyId> collider_of_;    // per body: body id of its colliders
     FrameTree* frames_;
     MovingColliders* colliders_;
     const ForceField& forces_;
-    std::vector<Wrench> loads_;   // of each body, N and N m, in the planned paths
-    std::vector<double> shares_;  // of each body: factor on its inverse mass and inertia in this substep
+    std::vector<Wrench> loads_;   // per body: load in the planned path, N and N m
+    std::vector<double> shares_;  // per body: factor on its inverse mass and inertia in this substep
     double oldest_ = 0.0;         // s
-    bool is_planned_ = false;     // the last plan has not been followed
+    bool is_planned_ = false;     // true if the last plan has not been followed yet
 };
 
 class DrivenMotion {
 public:
-    /// frames and colliders: contain the bodies' frames and colliders; null if there are none. All must outlive it.
-    /// Throws InputError for invalid descriptions.
+    /// frames: contains the frames of the bodies; null without frames. colliders: contains the colliders of the bodies.
+    /// All arguments must outlive the object. Throws InputError for invalid descriptions.
     DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frames, MovingColliders& colliders,
                  const ForceField& forces, const ResponseSettings& settings);
 
     [[nodiscard]] bool is_active() const { return !bodies_.empty(); }
     [[nodiscard]] const std::vector<DrivenBody>& bodies() const { return bodies_; }
 
-    /// Returns the latest end, in s, of a substep that begins at a time; at most `end`, in s.
+    /// Returns the latest possible end, in s, of a substep that starts at `begin`, in s. The result is at most `end`,
+    /// in s.
     [[nodiscard]] double next_substep_end(double begin, double end) const;
-    /// Plans the bodies' paths over [begin, end], in s. They replace a plan that was not followed. Paths before
-    /// `oldest`, in s, are no longer needed.
+    /// Plans the paths of the bodies over [begin, end], in s. The new paths replace a plan that was not followed. Paths
+    /// before `oldest`, in s, are no longer needed.
     void plan(double begin, double end, double oldest);
-    /// Returns the time, in s, at which the planned substep must end if these are the loads on the bodies in it.
+    /// Returns the time, in s, at which the planned substep must end because of impacts. preview: loads on the bodies
+    /// in the substep.
     [[nodiscard]] double cut_by(std::vector<ColliderLoad> preview) const;
-    /// Plans the substep again if a load that rests on a body is heavy compared with it. The new plan contains the load
-    /// of a preview. It ends earlier if that load would change the body's velocity by much. cut: result of cut_by().
-    /// round: number of earlier calls for this substep. Returns false if the plan is kept, which then ends at the cut.
+    /// Plans the substep again if a load that rests on a body is heavy compared with the body. The new plan contains
+    /// the resting loads of the preview. It ends earlier if these loads would change the velocity of a body by much.
+    /// cut: result of cut_by(). round: number of earlier calls for this substep. Returns false if the plan is accepted.
+    /// The plan then ends at the cut.
     [[nodiscard]] bool plan_again(std::span<const ColliderLoad> preview, double cut, int round);
     /// Returns the end of the plan, in s.
     [[nodiscard]] double planned_end() const { return paths_.planned(0).end; }
-    /// Moves the bodies along their paths, and applies the loads of that time.
+    /// Moves the bodies along their paths, and applies the loads of the substep.
     void follow(std::span<const ColliderLoad> loads);
     /// Applies loads of an earlier substep of the step.
     void take(std::span<const ColliderLoad> loads);
-    /// Must be called at the start of a step. The loads that rested on the bodies in the last step become planned
-    /// loads.
+    /// Begins a step. The loads that rested on the bodies in the last step become planned loads.
     void begin_step();
-    /// Returns the energy, in J, that a body gets from a load in addition to ColliderLoad::work, because the load
-    /// changes its velocity.
+    /// Returns the energy, in J, that a body gains from a load in addition to ColliderLoad::work, because the load
+    /// changes the body's velocity.
     [[nodiscard]] double work_by_yielding(const ColliderLoad& load) const;
-    /// Selects the substep that begins at a time, in s, for particles that move through this step later. Returns its
-    /// end, in s.
+    /// Selects the substep that begins at a time, in s, for children, which repeat the substeps of this step. Returns
+    /// the end of the substep, in s.
     double repeat_substep(double time) { return paths_.repeat(time); }
 
-    /// Saves or restores the motion of the bodies; a: an archive of core/binary_archive.h.
+    /// Saves or restores the motion of the bodies. a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a) {
         for (DrivenBody& body : bodies_) body.archive(a);
@@ -142,16 +147,16 @@ public:
         a(longest_part_);
     }
 
-    /// Returns false if no run leaves the bodies in this state at a time, in s.
+    /// Returns false if no run can produce the present state of the bodies at a time, in s.
     [[nodiscard]] bool is_sound(double time) const;
 
 private:
-    /// Comparison of a planned load with the load that a preview of the plan gives.
+    /// Comparison of a planned load with the load that a preview of the plan returns.
     struct Fit {
-        Wrench back;           // load of the preview, N, N m
-        double longest = 1.0;  // part of the duration in which the load changes the body's motion by little
+        Wrench back;           // load of the preview, N and N m
+        double longest = 1.0;  // fraction of the duration in which the load changes the body's motion by little
         bool fits = true;
-        bool is_near = true;  // the difference of the loads changes the body's motion by little
+        bool is_near = true;  // true if the difference of the loads changes the body's motion by little
     };
 
     [[nodiscard]] std::vector<double> shares_of(std::span<const ColliderLoad> preview, double end) const;
@@ -173,19 +178,19 @@ private:
 
     std::vector<DrivenBody> bodies_;
     BodyPaths paths_;
-    double slow_;                                                    // m/s, of impacts that end bounces
+    double slow_;                                                    // m/s, largest speed of impacts that end bouncing
     double time_step_;                                               // s
     double shortest_part_;                                           // s
-    double longest_part_ = std::numeric_limits<double>::infinity();  // s, of the next substep
-    bool was_shortened_ = false;                                     // this substep, because of resting loads
-    bool was_cut_ = false;                     // the last plan of this substep, by an impact while loads rest on bodies
-    bool has_given_up_ = false;                // no load fits in this substep
-    std::vector<Wrench> loads_;                // of each body, N and N m: resting load for the next plan
-    std::vector<Wrench> resting_loads_;        // of each body, N s and N m s, by lasting contact in this step so far
-    double resting_time_ = 0.0;                // s, of this step so far
+    double longest_part_ = std::numeric_limits<double>::infinity();  // s, largest duration of the next substep
+    bool was_shortened_ = false;                                     // true if resting loads shortened this substep
+    bool was_cut_ = false;                     // true if an impact has cut the last plan while loads rest on bodies
+    bool has_given_up_ = false;                // true if no load fits in this substep
+    std::vector<Wrench> loads_;                // per body: resting load for the next plan, N and N m
+    std::vector<Wrench> resting_loads_;        // per body: impulse of lasting contact in this step, N s and N m s
+    double resting_time_ = 0.0;                // s, duration of the substeps of this step so far
     std::vector<BodyContacts> contacts_;       // of each body
     std::vector<LoadRelaxation> relaxations_;  // of each body
-    int parts_ = 0;                            // substeps of this step so far
+    int parts_ = 0;                            // number of substeps of this step so far
 };
 
 }  // namespace ricochet

@@ -23,21 +23,23 @@ namespace {
 
 constexpr double kExplodes = std::numeric_limits<double>::infinity();
 
-/// Most steps of a trial. After so many, rounding is far below a growth by a hundredth in a long run.
+/// Largest number of steps of a trial. After so many steps, rounding errors are far below a growth that reaches a
+/// hundredth in a long run.
 constexpr std::size_t kMostTrialSteps = 4096;
 
-/// Largest growth of the energy, over the largest kinetic energy, without a warning. Local, because it decides only
-/// about a warning.
+/// Largest growth of the energy without a warning, divided by the largest kinetic energy. Local, because it decides
+/// only about a warning.
 constexpr double kLargestGain = 0.01;
 
-/// Rounding of energies, over the largest potential energy. Local, because it decides only about a warning.
+/// Rounding error of energies, divided by the largest potential energy. Local, because it decides only about a warning.
 constexpr double kEnergyNoise = 1e-11;
 
-/// Most particles that are examined, and most of them that are tried: those at whose positions forces vary most.
+/// Largest numbers of particles that are examined and of particles that are tried. The tried particles are those at
+/// whose positions forces vary most.
 constexpr std::size_t kMostSubjects = 256;
 constexpr std::size_t kMostTried = 4;
 
-/// Reference to a force of a setup that is not built yet.
+/// Force that refers to a force of a setup, because the setup keeps its forces.
 class Borrowed final : public Force {
 public:
     explicit Borrowed(const Force& force) : force_(force) {}
@@ -52,19 +54,20 @@ private:
     const Force& force_;
 };
 
-/// All forces of a setup, and their common effect on energies.
+/// All forces of a setup, and their combined effect on energies.
 struct TrialForces {
     ForceField field;
     EnergyLaw law;
     std::string names;  ///< list of the forces that vary
 };
 
-/// Returns nothing if there is no energy to keep.
+/// Returns the forces of a setup. Returns nothing if no force varies, or if the effect of a force on energies is not
+/// known.
 std::optional<TrialForces> trial_forces(const SimulationSetup& setup) {
     std::vector<std::unique_ptr<Force>> borrowed;
     TrialForces forces;
     for (std::size_t k = 0; k < setup.forces.size(); ++k) {
-        if (!setup.forces[k]) return std::nullopt;  // refused elsewhere
+        if (!setup.forces[k]) return std::nullopt;  // other code refuses a null force
         const std::optional<EnergyLaw> law = energy_law_of(*setup.forces[k]);
         if (!law) return std::nullopt;
         forces.law.is_dissipative |= law->is_dissipative;
@@ -79,18 +82,19 @@ std::optional<TrialForces> trial_forces(const SimulationSetup& setup) {
     return forces;
 }
 
-/// A particle at its start.
+/// A particle at the start of its life.
 struct Subject {
     ForceInput state{};
     std::string name;
     double lifetime = std::numeric_limits<double>::infinity();  // s
-    bool is_coupled = false;                                    ///< other particles act on it
-    double rate = 0.0;                                          ///< 1/s^2, at which forces vary at its position
+    bool is_coupled = false;                                    ///< true if other particles act on the particle
+    double rate = 0.0;                                          ///< result of rate_at() at the start, in 1/s^2
 };
 
-/// Returns the rate of change of accelerations with position, or the squared one with velocity if larger, in 1/s^2.
+/// Returns the larger of two rates, in 1/s^2: the change of the acceleration per distance, and the square of its change
+/// per velocity.
 double rate_at(const ForceField& field, const ForceInput& state) {
-    // Local: a step of a numerical derivative for warnings.
+    // Local: the step of a numerical derivative that serves only warnings.
     constexpr double kDifference = 1e-6;
     const Vec3 here = field.acceleration(state);
     const double apart = kDifference * (1.0 + max_abs(state.position));
@@ -162,8 +166,8 @@ public:
     /// Returns true if the particle comes so near to a point of infinite force that no sub-step is short enough.
     [[nodiscard]] bool falls_in() const { return is_coarse_; }
 
-    /// Returns the unphysical growth of the energy in the trial over the largest kinetic energy: kExplodes if it has no
-    /// bound, 0 if it does not grow.
+    /// Returns the unphysical growth of the energy in the trial divided by the largest kinetic energy. The result is
+    /// kExplodes if the growth is unlimited, and 0 if the energy does not grow.
     [[nodiscard]] double gain(const Integrator& integrator) const {
         Course course = course_of(integrator, kMostSubsteps);
         if (course.energies.size() < steps_) return kExplodes;
@@ -188,13 +192,13 @@ public:
 
 private:
     struct Course {
-        std::vector<double> energies;  // J, after each step, as long as the motion makes sense
-        double kinetic = 0.0;          // J, the largest
-        double potential = 0.0;        // J, the largest magnitude
+        std::vector<double> energies;  // J, after each step, until the state is out of range
+        double kinetic = 0.0;          // J, largest kinetic energy
+        double potential = 0.0;        // J, largest magnitude of the potential energy
         bool is_coarse = false;
     };
 
-    /// Computes the true motion of the particle.
+    /// Computes an accurate motion of the particle as the reference.
     void follow() {
         const double speed = std::max(length(start_.velocity), step_ * length(forces_.field.acceleration(start_)));
         const ErrorTolerance tolerance{std::max(kTrialTolerance * max_abs(start_.position), kSmallestTolerance),
@@ -245,20 +249,21 @@ private:
 
     // Local, because it decides only about a warning.
     static constexpr double kTrialTolerance = 1e-8;
-    static constexpr std::size_t kSubstepsOfTrial = 16;  // for each step
+    static constexpr std::size_t kSubstepsOfTrial = 16;  // per step
 
     const TrialForces& forces_;
     ForceInput start_;
     double step_;
     std::size_t steps_;
-    std::vector<double> true_energies_;  // if forces dissipate energy; J, after each step
+    std::vector<double> true_energies_;  // J, after each step of the reference; empty if no force dissipates energy
     double energy_ = 0.0;                // J, at the start
     double kinetic_ = 0.0;
     double potential_ = 0.0;
     bool is_coarse_ = false;
 };
 
-/// Returns the integrator that moves the particle. Forces on coupled particles are not held over a step.
+/// Returns the integrator that moves the particle. For coupled particles, `ballistic` is replaced by velocity_verlet,
+/// because their forces are not kept constant over a step.
 Integrator integrator_of(const Subject& subject, Integrator integrator) {
     if (subject.is_coupled && integrator.kind == IntegratorKind::ballistic) {
         integrator.kind = IntegratorKind::velocity_verlet;
@@ -266,13 +271,13 @@ Integrator integrator_of(const Subject& subject, Integrator integrator) {
     return integrator;
 }
 
-/// A trial of some steps of a run.
+/// Length of a trial that covers some steps of a run.
 struct TrialLength {
     double step = 0.0;  ///< s
     std::size_t tried = 0;
     double in_all = 0.0;  ///< steps of the run in the particle's lifetime
 
-    /// Returns the gain in the whole run, if the energy goes on growing by the same factor as in the trial.
+    /// Returns the gain in the whole run, if the energy continues to grow by the same factor per step as in the trial.
     [[nodiscard]] double in_run(double gain) const {
         return std::expm1(std::log1p(gain) * in_all / static_cast<double>(tried));
     }
@@ -287,7 +292,8 @@ TrialLength length_of(const SimulationSetup& setup, const Subject& subject) {
     return length;
 }
 
-/// Returns an integrator that keeps the energy of the trial with the same step, or an empty name if none is known.
+/// Returns the name of an integrator that conserves the energy in the trial with the same step. Returns an empty name
+/// if no such integrator is known.
 std::string_view better_than(const Integrator& integrator, const SimulationSetup& setup, const EnergyTrial& trial,
                              const TrialLength& length) {
     const SimulationOptions& options = setup.options;

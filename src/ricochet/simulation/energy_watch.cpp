@@ -15,7 +15,8 @@ namespace {
 /// Members per unit of parallel work.
 constexpr std::size_t kWatchBlock = 256;
 
-/// Returns an energy, in J, that rounding explains: all springs are stretched by a negligible part of their length.
+/// Returns an energy, in J, that can result from rounding. It is the energy of all springs when each of them is
+/// stretched by a negligible part of its length.
 double negligible_energy(const SpringNetwork& island) {
     double sum = 0.0;
     for (const Spring& spring : island.springs()) {
@@ -42,7 +43,8 @@ double EnergyWatch::of(const std::vector<Vec3>& positions, const std::vector<Vec
     return kinetic_energy(system_, velocities) + system_.spring_energy(positions);
 }
 
-// The work of a step is computed by the trapezoid rule, whose error is of the size of the work.
+// The trapezoid rule gives the work of a step. Its error can be as large as the work, so the magnitude of the work
+// counts as given energy.
 void EnergyWatch::watch(const SystemStep& step) {
     const double before = of(system_.positions(), system_.velocities());
     const double after = of(step.positions, step.velocities);
@@ -56,8 +58,8 @@ void EnergyWatch::watch(const SystemStep& step) {
         pull += 2.0 * system_.expected_reaction(k);
         if (!step.mutual_start.empty()) pull += step.mutual_start[k];
         if (!step.mutual_start.empty()) pull += (step.mutual_end.empty() ? step.mutual_start : step.mutual_end)[k];
-        // Uses the path that the velocities give. The path of forward Euler starts without the forces, which would do
-        // no work.
+        // Uses the displacement that the mean velocity gives. The path of forward Euler depends only on the velocity at
+        // the start, so forces on a particle at rest would do no work along it.
         return 0.25 * step.duration * system_.mass(k) * dot(pull, v0 + v1);
     };
     const auto sum = [&](auto&& term) {

@@ -24,8 +24,8 @@ struct FlightKnot {
     Vec3 after;     ///< m/s, velocity of departure
 };
 
-/// Returns the state at a time, in s, on the cubic through both ends of a flight with their velocities. Exact for a
-/// constant acceleration.
+/// Returns the state at a time, in s, on the cubic polynomial that matches the positions and velocities at both ends of
+/// a flight. The state is exact for a constant acceleration.
 [[nodiscard]] inline PhaseState state_between(const FlightKnot& a, const FlightKnot& b, double time) {
     const double duration = b.time - a.time;
     if (!(duration > 0.0)) return {a.position, a.after};
@@ -37,8 +37,9 @@ struct FlightKnot {
             (chord + (1.0 - s) * (1.0 - 3.0 * s) * begin + s * (2.0 - 3.0 * s) * end) / duration};
 }
 
-/// Returns the knots of particle i in a step. start: its state at the start. from, to: start and end of the step, in s.
-/// records: its impacts, in the order of time. The knots of a particle that an impact removes end there.
+/// Returns the knots of particle i in a step. start: state of the particle at the start of the step. from, to: start
+/// and end of the step, in s. records: impacts of the particle, in the order of time. If an impact removes the
+/// particle, this impact is the last knot.
 [[nodiscard]] inline std::vector<FlightKnot> flight_knots(const Particles& particles, std::size_t i,
                                                           const PhaseState& start, double from, double to,
                                                           std::span<const ContactRecord> records) {
@@ -53,7 +54,7 @@ struct FlightKnot {
     return knots;
 }
 
-/// Contact records by particle. The records of one particle stay in their order.
+/// Contact records by particle. The records of one particle keep their order.
 class RecordsByParticle {
 public:
     explicit RecordsByParticle(std::vector<ContactRecord> records) : records_(std::move(records)) {

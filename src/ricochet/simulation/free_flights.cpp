@@ -77,12 +77,13 @@ void FreeFlights::advance_one(std::size_t i, const FreeFlight& flight, const Tim
     particles.velocity[i] = end.velocity;
 }
 
-/// Finds the passages of a particle past counters before its flight is stored. end: its state at the end.
+/// Records the passages of a particle through counters in a flight that is not stored yet. end: state of the particle
+/// at the end of the flight.
 void FreeFlights::note_passages(std::size_t i, const PhaseState& end, double duration, BlockRecord& record) const {
     const Particles& particles = store_.particles();
     const Vec3& from = particles.position[i];
     const Vec3& velocity = particles.velocity[i];
-    // A parabola lies at most an eighth of its change of velocity times its duration from its chord.
+    // The distance of a parabola from its chord is at most its duration times its velocity change, divided by 8.
     if (!observers_.passages->may_pass(from, end.position, duration * length(end.velocity - velocity) / 8.0)) return;
     const bool is_line = kicks_first(integrator_.kind) || integrator_.kind == IntegratorKind::forward_euler;
     const Path path = is_line ? line_path(from, (end.position - from) / duration, duration)
@@ -107,7 +108,7 @@ void FreeFlights::catch_up(std::size_t i) {
     particles.velocity[i] = state.velocity;
 }
 
-// Makes the deferred steps of the active set, while the next particles are being fetched from memory.
+// Integrates the deferred steps of the active set. The next particles are prefetched from memory at the same time.
 void FreeFlights::catch_up_active(std::span<const std::uint32_t> active) {
     const Particles& particles = store_.particles();
     for (std::size_t k = 0; k < active.size(); ++k) {

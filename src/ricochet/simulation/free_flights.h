@@ -19,17 +19,18 @@
 
 namespace ricochet {
 
-// Steps of free flights, integrated together later. A particle that makes many of them at once is fetched from memory
-// once.
+// Deferred steps of free flights are integrated together later. A particle is then fetched from memory only once for
+// many steps.
 
-/// The latest steps, and how many of them each particle has made. A particle in free flight makes none of them until it
-/// needs a query.
+/// The latest steps, and the number of them that each particle has made. A particle in free flight makes these steps
+/// when it needs a query.
 class DeferredSteps {
 public:
-    /// Most steps that are kept, so that they stay in the L1 cache and counts stay small.
+    /// Largest number of stored steps. It is small, so that the steps stay in the L1 cache and a count fits into a
+    /// byte.
     static constexpr std::size_t kMost = 64;
 
-    /// Begins with `count` particles that defer no steps.
+    /// Starts with `count` particles that have no deferred steps.
     explicit DeferredSteps(std::size_t count) : made_(count, 0) {}
 
     /// Adds a step that all particles in free flight defer. Must not be called if is_full().
@@ -40,7 +41,7 @@ public:
     [[nodiscard]] bool is_full() const { return steps_.size() == kMost; }
     [[nodiscard]] bool is_empty() const { return steps_.empty(); }
 
-    /// Adds a particle that is spawned in the present step. It has deferred nothing.
+    /// Adds a particle that is spawned in the present step. The particle has no deferred steps.
     void append() { made_.push_back(static_cast<std::uint8_t>(steps_.size())); }
     /// Reserves memory for `more` particles.
     void reserve(std::size_t more) { grow_capacity_by(made_, more); }
@@ -56,26 +57,26 @@ public:
     /// Returns the state of a particle after its deferred steps.
     [[nodiscard]] PhaseState after(std::size_t i, PhaseState state) const {
         std::size_t k = made_[i];
-        if (k >= steps_.size()) return state;  // more than these, if the present step has failed
+        if (k >= steps_.size()) return state;  // one step more is possible if the present step has failed
         state = steps_[k++].step(state.position, state.velocity);
         if (is_straight_ && moves_far(state.velocity)) return straight_on(k, state);
         for (; k < steps_.size(); ++k) state = steps_[k].step(state.position, state.velocity);
         return state;
     }
-    /// Marks a particle that has made all steps so far and the present one.
+    /// Marks a particle that has made all stored steps and the present step.
     void make_next(std::size_t i) { made_[i] = static_cast<std::uint8_t>(steps_.size() + 1); }
-    /// Marks a particle that has slept through all steps so far, and has nothing to make up for.
+    /// Marks a particle that has slept during all stored steps, so that it has no deferred steps.
     void skip(std::size_t i) { made_[i] = static_cast<std::uint8_t>(steps_.size()); }
-    /// Removes the steps after every particle has made them.
+    /// Removes all steps. Must be called only after every particle has made them.
     void clear() {
         steps_.clear();
         std::fill(made_.begin(), made_.end(), std::uint8_t{0});
     }
 
 private:
-    // If a step moves a particle along each axis by 0 or by at least 2^-230 m, its end is no position that flush_tiny()
-    // changes. If the position nearly cancels the displacement, both are multiples of 2^-283 m. Local: bounds that this
-    // proof needs.
+    // flush_tiny() does not change the end of a step that moves a particle along each axis by 0 or by at least 2^-230
+    // m. If the position nearly cancels the displacement, both are multiples of 2^-283 m, and so is their sum. Local:
+    // this proof needs the bounds.
     static constexpr double kShortestStraight = 0x1p-100;  ///< s
     static constexpr double kSlowestStraight = 0x1p-130;   ///< m/s
 
@@ -84,44 +85,45 @@ private:
         return far(velocity.x) && far(velocity.y) && far(velocity.z);
     }
 
-    /// Gives the result of FreeFlight::step() in fewer operations that wait for each other.
+    /// Returns the same result as FreeFlight::step() with fewer operations that depend on each other.
     [[nodiscard]] PhaseState straight_on(std::size_t k, PhaseState state) const {
         for (; k < steps_.size(); ++k) state.position += steps_[k].duration() * state.velocity;
         return state;
     }
 
-    bool is_straight_ = true;  ///< all steps are straight, and none is very short
+    bool is_straight_ = true;  ///< true if all steps are straight and no step is very short
     std::vector<FreeFlight> steps_;
     std::vector<std::uint8_t> made_;  ///< number of steps that each particle has made
 };
 
-/// Advances the particles in free flight, and finds the others. Every step begins with this pass over all particles.
+/// Advances the particles in free flight, and finds the particles that need a query. Every step begins with this pass
+/// over all particles.
 class FreeFlights {
 public:
-    /// All must outlive it.
+    /// All arguments must outlive the object.
     FreeFlights(ParticleStore& store, const QuerySchedule& schedule, const ForceField& forces,
                 const Integrator& integrator, const MoveObservers& observers)
         : store_(store), schedule_(schedule), forces_(forces), integrator_(integrator), observers_(observers) {}
 
-    /// Advances the particles of the range that are in free flight. Returns the others that need a query, in ascending
-    /// order, with one block for kParticleBlock particles of the range.
+    /// Advances the particles of the range that are in free flight. Returns the particles that need a query, in
+    /// ascending order, in one block per kParticleBlock particles of the range.
     [[nodiscard]] ActiveSet advance(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks);
 
-    /// Begins deferred steps: particles in free flight keep their stored state, and make several steps at once before
-    /// their next query. Must be called only if nothing reads their states in between. Has no effect if accelerations
-    /// differ.
+    /// Starts to defer steps. Particles in free flight then keep their stored state, and make several steps together
+    /// before their next query. Must be called only if no code reads the states of these particles in between. Has no
+    /// effect if the particles have different accelerations.
     void begin_deferring();
     [[nodiscard]] bool is_deferring() const { return deferred_.has_value(); }
-    /// Lets all particles make their deferred steps.
+    /// Integrates the deferred steps of all particles, and stops deferring.
     void end_deferring();
-    /// Lets a particle that has slept take part from the next step on.
+    /// Includes a woken particle from the next step on.
     void wake(std::size_t i) {
         if (deferred_) deferred_->skip(i);
     }
-    /// Forgets deferred steps without making them.
+    /// Discards deferred steps without integrating them.
     void drop_deferred() { deferred_.reset(); }
 
-    // Like the functions of Particles.
+    // These functions have the same meaning as those of Particles.
     void append();
     void reserve(std::size_t more);
     void compact(const std::vector<std::uint8_t>& keep);

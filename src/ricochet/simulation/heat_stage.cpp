@@ -9,7 +9,7 @@
 namespace ricochet {
 namespace {
 
-/// J, of a solid sphere.
+/// Returns the kinetic energy of a solid sphere, in J.
 double kinetic(const RecordedMotion& motion, double radius, double mass) {
     return 0.5 * mass * (dot(motion.velocity, motion.velocity) + 0.4 * radius * radius * dot(motion.spin, motion.spin));
 }
@@ -37,21 +37,22 @@ void FrictionMeter::note(std::size_t i, const ForceInput& moved, const MoveScrat
             if (is_impact || !scratch.loads[load].impact)
                 lost -= scratch.loads[load].work;
             else
-                break;  // that of the impact at the end of this contact
+                break;  // this load belongs to the impact at the end of the contact
         }
         double along_normal = 0.0;
         for (; is_impact && record < scratch.records.size() && scratch.records[record].time <= end; ++record) {
             along_normal += lost_along_normal(scratch.records[record]);
         }
-        lost = std::max(lost, 0.0);  // rounding
+        lost = std::max(lost, 0.0);  // negative only by rounding
         along_normal = std::clamp(along_normal, 0.0, lost);
         const double heat = heat_.impact_fraction * along_normal + heat_.friction_fraction * (lost - along_normal);
         if (heat > 0.0) gains.push_back({i, part.time + 0.5 * part.duration, heat});
     }
 }
 
-/// J, in contact that lasts: Simpson's rule for force times velocity, that in the middle as a cubic through both ends
-/// has it; exact for steady forces. Seen from a frame that moves, the part's forces are not those of the world.
+/// Returns the work of forces in lasting contact, in J. Uses Simpson's rule for force times velocity. The velocity in
+/// the middle is that of a cubic through both ends. The result is exact for steady forces. In a moving frame, the
+/// forces of `part` differ from the forces in the world, so the latter are computed again.
 double FrictionMeter::work_of_forces(const MotionPart& part, const ForceInput& moved) const {
     const Vec3 displacement = part.end.position - part.begin.position;
     const Vec3 middle_velocity =
@@ -95,7 +96,7 @@ void HeatStage::before_generation(const ParticleRange& generation, const TimeSpa
     });
 }
 
-/// W/(m^2 K), where a particle is at a time, s.
+/// Returns the coefficient of convection, in W/(m^2 K), at the position of a particle at a time, in s.
 double HeatStage::coefficient(std::size_t i, double time) const {
     const Particles& particles = store_.particles();
     const double radius = particles.radius[i];
@@ -127,7 +128,8 @@ void HeatStage::after_generation(const ParticleRange& generation, const TimeSpan
     });
 }
 
-/// K. Convection by the mean of both ends of the step. before: the coefficient at its begin, where that is not given.
+/// Returns the temperature of particle i at the end of its life in the step, in K. Convection uses the mean of the
+/// coefficients at both ends. before: coefficient before the move. It is not used if the scene gives one value.
 double HeatStage::changed(std::size_t i, const TimeSpan& life, double before, std::span<const HeatGain> gains) const {
     const Particles& particles = store_.particles();
     const double mass = particles.mass[i];

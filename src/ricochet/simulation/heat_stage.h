@@ -15,16 +15,17 @@
 
 namespace ricochet {
 
-/// Measures the energy that surfaces turn into heat, from the record of a particle's move. It is the kinetic energy
-/// that the particle loses in contact, plus the work of forces in that time, minus the work on moving surfaces.
+/// Measures the energy that surfaces turn into heat, from the record of a particle's move. This energy is the kinetic
+/// energy that the particle loses in contact, plus the work of forces during the contact, minus the work on moving
+/// surfaces.
 class FrictionMeter {
 public:
-    /// bodies: null if no collider moves. All must outlive the object.
+    /// bodies: empty if no collider moves. All arguments must outlive the object.
     FrictionMeter(const HeatSettings& heat, const ForceField& forces, const MovingColliders& bodies)
         : heat_(heat), forces_(forces), bodies_(bodies) {}
 
-    /// Appends the heat gains of particle i in the order of time. They follow from the entries of the move in
-    /// `scratch`, which begin at first_record and first_load.
+    /// Appends the heat gains of particle i in the order of time. scratch: contains the entries of the particle's move
+    /// from first_record and first_load on.
     void note(std::size_t i, const ForceInput& moved, const MoveScratch& scratch, std::size_t first_record,
               std::size_t first_load, std::vector<HeatGain>& gains) const;
 
@@ -39,17 +40,17 @@ private:
 /// Changes the temperatures of the particles that have moved.
 class HeatStage final : public Module {
 public:
-    /// store: with the attribute of the temperature; must outlive it. Other arguments: see FrictionMeter.
+    /// store: particles with the temperature attribute. It must outlive the object. Other arguments: see FrictionMeter.
     HeatStage(HeatSettings heat, ParticleStore& store, const ForceField& forces, const MovingColliders& bodies);
 
-    /// Returns null if surfaces do not heat particles.
+    /// Returns the meter, or null if surfaces do not heat particles.
     [[nodiscard]] const FrictionMeter* meter() const { return heat_.is_heated_by_surfaces() ? &meter_ : nullptr; }
 
-    /// Keeps the coefficients of convection of the particles before they move.
+    /// Stores the coefficients of convection of the particles before they move.
     void before_generation(const ParticleRange& generation, const TimeSpan& step) override;
     void record(const ParticleRange& generation, const std::vector<BlockRecord>& blocks,
                 std::vector<ColliderLoad>& loads) override;
-    /// Cools each particle for the time that it has lived in the step, and heats it at the times of its gains.
+    /// Cools each particle for the time that it has lived in the step. Heats it at the times of its heat gains.
     void after_generation(const ParticleRange& generation, const TimeSpan& step) override;
 
 private:
@@ -59,10 +60,10 @@ private:
 
     HeatSettings heat_;
     ParticleStore& store_;
-    std::size_t column_;  // of the temperature
+    std::size_t column_;  // column of the temperature attribute
     FrictionMeter meter_;
     std::vector<double> coefficients_;  // W/(m^2 K), per particle before its move; empty if the scene gives one value
-    std::vector<HeatGain> gains_;       // in this generation; those of one particle are in the order of time
+    std::vector<HeatGain> gains_;       // in this generation; the gains of one particle are in the order of time
 };
 
 }  // namespace ricochet

@@ -9,8 +9,8 @@
 namespace ricochet {
 namespace {
 
-/// Returns a time after `time` by a part of the interval to `next`, or by more than rounding if that is longer. The
-/// result is at most `next`.
+/// Returns `time` plus a fraction `part` of the interval to `next`. The delay exceeds rounding errors, but the result
+/// is at most `next`.
 double soon_after(double time, double next, double part) {
     return std::min(next, time + std::max(part * (next - time), kSoonUlps * ulp(time)));
 }
@@ -20,7 +20,7 @@ double soon_after(double time, double next, double part) {
 /// Body on its planned path at a time: its inverse mass and inertia, and its velocity.
 struct ImpactTally::BodyOnPath {
     Mobility mobility;
-    Vec3 velocity;          ///< of the mobility's center, m/s
+    Vec3 velocity;          ///< velocity of the mobility's center, m/s
     Vec3 angular_velocity;  ///< rad/s
 
     [[nodiscard]] Wrench about_center(Wrench wrench, const Vec3& center) const {

@@ -15,9 +15,9 @@
 
 namespace ricochet {
 
-/// Members refer to members above them, so the object is never moved.
+/// The parts of a running simulation. Members refer to members above them, so the object must not be moved.
 struct Simulation::Impl {
-    /// setup: gives most of its parts away. particle_bytes: memory of one more particle.
+    /// setup: most of its parts are moved out. particle_bytes: memory of one more particle, in bytes.
     Impl(SimulationSetup& setup, double particle_bytes);
 
     // A step, see step.cpp.

@@ -16,9 +16,9 @@ constexpr std::size_t kIslandBlock = 16;
 /// Number of members between the prefetch of a member and its use, because neighbours in space are scattered in memory.
 constexpr std::size_t kIslandPrefetchDistance = 6;
 
-/// Rounds that join only spheres that have met. Later rounds also join spheres that touch the joined ones. Otherwise
-/// each round would find one more layer of a pile, and solve all layers below it again. Local, because only the cost
-/// depends on it.
+/// Number of rounds that join only spheres that have met. Later rounds also join spheres that touch joined spheres.
+/// Otherwise each round would add only one layer of a pile, and solve all layers below it again. Local, because only
+/// the cost depends on it.
 constexpr std::size_t kRoundsAlone = 2;
 
 bool contains(const Box3& outer, const Box3& inner) {
@@ -34,7 +34,7 @@ void IslandBuilder::solve(const ParticleRange& range, const TimeSpan& step) {
     run(step);
     while (join_those_met()) rebuild(step);
     for (Island& island : islands_) {
-        // Members that have flown as if alone are moved like other particles.
+        // Removes members that have met no other sphere. They are moved like other particles.
         std::erase_if(island.members, [](const IslandMember& member) { return member.is_free; });
     }
 }
@@ -49,14 +49,14 @@ void IslandBuilder::find_islands(const ParticleRange& range) {
         involved.push_back(pair.first);
         involved.push_back(pair.second);
     }
-    // Spheres that may leave their boxes are watched even if they meet no others.
+    // Spheres that may leave their boxes form islands even if they meet no other sphere.
     for (std::uint32_t k = 0; k < range.size(); ++k) {
         if (plans_.may_roam(k)) involved.push_back(k);
     }
     islands_ = islands_of(involved);
 }
 
-/// Joins the islands of two particles. Returns false if they belong to one island already.
+/// Joins the islands of two particles. Returns false if both particles belong to the same island already.
 bool IslandBuilder::join(std::uint32_t a, std::uint32_t b) {
     a = sets_.find(a);
     b = sets_.find(b);
@@ -66,7 +66,8 @@ bool IslandBuilder::join(std::uint32_t a, std::uint32_t b) {
     return true;
 }
 
-/// Returns the islands in the order of their lowest particles, which represent them.
+/// Returns the islands in the order of their lowest particle numbers. The particle with the lowest number represents
+/// its island.
 std::vector<IslandBuilder::Island> IslandBuilder::islands_of(const std::vector<std::uint32_t>& involved) {
     is_involved_.assign(sets_.size(), 0);
     for (const std::uint32_t k : involved) is_involved_[k] = 1;
@@ -110,7 +111,8 @@ void IslandBuilder::run(const TimeSpan& step) {
     });
 }
 
-/// Collects the members as they are at the start of the step. They are ordered by position, so that ids have no effect.
+/// Collects the members of an island in their states at the start of the step. Orders them by position, so that ids do
+/// not affect the result.
 void IslandBuilder::collect_members(Island& island, const TimeSpan& step) {
     struct Placed {
         double x;
@@ -142,7 +144,8 @@ void IslandBuilder::collect_members(Island& island, const TimeSpan& step) {
     }
 }
 
-/// Returns true if a member has left its declared bounds: its path if it flies freely, else its box.
+/// Returns true if a member has left its declared bounds. The bounds of a member in free flight are its path. The
+/// bounds of any other member are its box.
 bool IslandBuilder::is_out_of_bounds(const Island& island, const IslandMember& member) const {
     if (member.is_fixed) return false;
     const auto k = static_cast<std::uint32_t>(member.particle - first_);
@@ -150,7 +153,8 @@ bool IslandBuilder::is_out_of_bounds(const Island& island, const IslandMember& m
     return member.impacts > 0 || !contains(plans_.box(k), member.swept);
 }
 
-/// Returns the members of islands of this round first, then the members of islands that earlier rounds have joined.
+/// Returns the members out of bounds. Members of islands of this round come first, then members of islands that earlier
+/// rounds have joined.
 IslandBuilder::OutOfBoundsMembers IslandBuilder::members_out_of_bounds() const {
     OutOfBoundsMembers off;
     std::vector<const IslandMember*> earlier;
@@ -173,8 +177,8 @@ IslandBuilder::OutOfBoundsMembers IslandBuilder::members_out_of_bounds() const {
     return off;
 }
 
-/// Returns, for each member out of bounds in this round, the spheres that it may have met. They have kept their
-/// declared bounds, or were out of bounds in the first round.
+/// Returns, for each member out of bounds in this round, the spheres that the member may have met. These spheres have
+/// kept their declared bounds, or have left them in the first round and have not been solved again.
 std::vector<std::vector<std::uint32_t>> IslandBuilder::met_by(const OutOfBoundsMembers& off) {
     std::vector<std::vector<std::uint32_t>> met(off.of_this_round);
     const auto for_each = [&](const auto& body) {
@@ -192,7 +196,8 @@ std::vector<std::vector<std::uint32_t>> IslandBuilder::met_by(const OutOfBoundsM
         std::vector<std::uint32_t> near;
         first_off_plan_grid_.find_near(swept, near);
         for (const std::uint32_t k : near) {
-            const IslandMember* const other = first_out_of_bounds_[k];  // valid if it has not been solved again
+            const IslandMember* const other = first_out_of_bounds_[k];  // valid only if the member has not been solved
+                                                                        // again
             if (has_run_anew_[first_numbers_[k]] == 0 && may_have_met(member, *other))
                 found.push_back(first_numbers_[k]);
         }
@@ -206,8 +211,8 @@ bool IslandBuilder::may_have_met(const IslandMember& first, const IslandMember& 
     return first_meeting(first.trajectory, second.trajectory, first.radius() + second.radius(), 0.0).has_value();
 }
 
-/// Joins islands whose members out of bounds have met particles of other islands. Returns false if there are none.
-/// Islands of earlier rounds have been compared with each other already.
+/// Joins islands whose members out of bounds have met particles of other islands. Returns false if no islands are
+/// joined. Two islands of earlier rounds have been compared already.
 bool IslandBuilder::join_those_met() {
     const OutOfBoundsMembers off = members_out_of_bounds();
     const auto number = [&](const IslandMember& member) {
@@ -220,7 +225,7 @@ bool IslandBuilder::join_those_met() {
     }
     NeighbourGrid& grid = round_ == 0 ? first_off_plan_grid_ : out_of_bounds_grid_;
     for (const NeighbourPair& pair : grid.find_pairs(off.swept)) {
-        if (pair.first >= off.of_this_round) continue;  // both are of earlier rounds
+        if (pair.first >= off.of_this_round) continue;  // both members are of earlier rounds
         const IslandMember& first = *off.members[pair.first];
         const IslandMember& second = *off.members[pair.second];
         if (may_have_met(first, second)) static_cast<void>(join(number(first), number(second)));
@@ -237,8 +242,8 @@ bool IslandBuilder::join_those_met() {
     return !joined_.empty();
 }
 
-/// Returns all members of the joined islands, whichever particle represents them. Otherwise the order of particles
-/// would decide which spheres rest on them.
+/// Returns all members of the joined islands, not only the particles that represent the islands. Otherwise the order of
+/// particles would decide which spheres count as resting on the islands.
 std::vector<std::uint32_t> IslandBuilder::members_joined() {
     std::vector<std::uint8_t> is_joined(sets_.size(), 0);
     for (const std::uint32_t k : joined_) is_joined[sets_.find(k)] = 1;
@@ -252,7 +257,7 @@ std::vector<std::uint32_t> IslandBuilder::members_joined() {
     return members;
 }
 
-/// Solves joined islands again and keeps the others.
+/// Solves joined islands again and keeps the other islands.
 void IslandBuilder::rebuild(const TimeSpan& step) {
     std::vector<std::uint32_t> involved = joined_;
     for (const Island& island : islands_) {

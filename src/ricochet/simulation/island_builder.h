@@ -1,10 +1,11 @@
 /// \file
 /// Private to the simulation: islands of spheres that meet each other in a step, and their solution.
 ///
-/// Spheres that may meet, by their declared bounds (PairPlans), form islands. Islands are solved in parallel: impact by
-/// impact (EventIsland), or as one problem of all contacts (ContactIslands). A member that has left its declared bounds
-/// may have missed other spheres. Its island is joined with the spheres that it would have met, and solved again from
-/// the start of the step. This repeats in rounds until no islands are joined.
+/// Spheres form an island if they may meet within their declared bounds (PairPlans). Islands are solved in parallel:
+/// impact by impact (EventIsland), or as one problem of all contacts (ContactIslands). If a member leaves its declared
+/// bounds, the solution may have missed its collisions with spheres outside the island. The island is then joined with
+/// the spheres that the member would have met, and solved again from the start of the step. These rounds repeat until
+/// no islands are joined.
 #pragma once
 
 #include <cstdint>
@@ -29,17 +30,17 @@ public:
         std::vector<PairMeeting> meetings;
         bool is_contact_island = false;
         ContactIslandTrace trace;
-        std::size_t round = 0;  ///< in which it was solved
+        std::size_t round = 0;  ///< round in which the island was solved
     };
 
-    /// All must outlive it.
+    /// All arguments must outlive the object.
     IslandBuilder(const PairParts& parts, PairPlans& plans, const LastingContacts& contacts)
         : parts_(parts), plans_(plans), contacts_(contacts), contact_islands_(parts, contacts) {}
 
-    /// Solves the islands among the particles of a range. Their plans must have been found.
+    /// Solves the islands among the particles of a range. The plans of these particles must have been found.
     void solve(const ParticleRange& range, const TimeSpan& step);
-    /// Returns the islands of this step, in the order of their lowest particles, without members that have flown
-    /// freely.
+    /// Returns the islands of this step, in the order of their lowest particle numbers. Members that have met no other
+    /// sphere are not included.
     [[nodiscard]] std::vector<Island>& all() { return islands_; }
 
 private:
@@ -47,7 +48,7 @@ private:
     struct OutOfBoundsMembers {
         std::vector<const IslandMember*> members;
         std::vector<Box3> swept;        ///< boxes of their paths
-        std::size_t of_this_round = 0;  ///< members of this round, which come first
+        std::size_t of_this_round = 0;  ///< number of members of this round, which come first
     };
 
     void find_islands(const ParticleRange& range);
@@ -67,18 +68,18 @@ private:
     PairPlans& plans_;
     const LastingContacts& contacts_;
     ContactIslands contact_islands_;
-    std::size_t first_ = 0;  // first particle of the range; numbers count from it
+    std::size_t first_ = 0;  // first particle of the range; particle numbers are relative to it
     std::vector<Island> islands_;
     DisjointSets sets_;  // particles of the range; the lowest number of an island represents it
     std::vector<std::uint8_t> is_involved_;
-    std::vector<std::size_t> island_of_;  // by the particle that represents it
-    std::size_t round_ = 0;               // of joining islands
+    std::vector<std::size_t> island_of_;  // index of an island, by the particle that represents it
+    std::size_t round_ = 0;               // number of the present round of joining islands
     std::vector<std::uint32_t> joined_;   // particles that the last round has joined
     NeighbourGrid out_of_bounds_grid_;
     NeighbourGrid first_off_plan_grid_;  // of the members out of bounds in the first round
     std::vector<const IslandMember*> first_out_of_bounds_;
-    std::vector<std::uint32_t> first_numbers_;  // numbers of these members
-    std::vector<std::uint8_t> has_run_anew_;    // by number: solved again in a later round
+    std::vector<std::uint32_t> first_numbers_;  // particle numbers of first_out_of_bounds_
+    std::vector<std::uint8_t> has_run_anew_;    // by particle number: 1 if solved again in a later round
 };
 
 }  // namespace ricochet

@@ -15,7 +15,8 @@ bool is_pinned(const ParticleStore& store, std::uint64_t particle) {
     return i && store.is_fixed(*i);
 }
 
-/// Returns the gap between the spheres of a pair, over the smaller radius. It is infinite if one of them is gone.
+/// Returns the gap between the spheres of a pair, divided by the smaller radius. The gap is infinite if one of the
+/// spheres is gone.
 double relative_gap(const ParticleStore& store, const ContactKey& key) {
     const std::optional<std::size_t> i = store.index_of(key.particle);
     const std::optional<std::size_t> k = store.index_of(key.other);
@@ -51,12 +52,12 @@ void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
         const Particles& particles = parts_.store.particles();
         if (is_beside_movers(rules(), particles.position[*i], particles.radius[*i])) carried.push_back(particle);
     }
-    // A sphere on a moving surface goes with it, however slowly.
+    // Wakes the spheres on moving surfaces, because even a slow surface carries its spheres along.
     wake_alone(sleeping_islands_.islands_of_sleepers(carried), step.begin);
     wake(gone, step.begin);
 }
 
-/// Sleepers farther away wake when they are pushed. Sleepers without support wake at once.
+/// Sleepers farther away wake later if they are pushed. Sleepers that have no support any more wake immediately.
 void LastingContacts::wake(const std::vector<std::uint64_t>& particles, double time, int contacts) {
     if (particles.empty()) return;
     const int farther = std::max(0, ++wakings_ - kWakingsAlone);
@@ -84,8 +85,8 @@ void LastingContacts::wake_alone(const std::vector<std::uint64_t>& woken, double
         if (*i >= first_ && *i - first_ < traces_.is_asleep.size()) traces_.is_asleep[*i - first_] = 0;
     }
     std::vector<WarmStartMemory::Entry> contacts = sleeping_islands_.wake(woken);
-    // Impulses of spheres that are awake are in the memory already, or have ended. Contacts without an impulse have no
-    // effect.
+    // Keeps only contacts that the memory lacks. Contacts of spheres that were awake before are in the memory already,
+    // or have ended. Contacts without an impulse have no effect.
     const auto has_lain = [&](std::uint64_t particle) {
         return std::binary_search(woken.begin(), woken.end(), particle) || sleeping_islands_.has(particle) ||
                is_pinned(parts_.store, particle);
@@ -129,8 +130,8 @@ std::vector<std::uint8_t> LastingContacts::pressing() const {
     return pressing;
 }
 
-/// Returns true if a sphere hits a sleeper in the step. Slow spheres that only press it onto its supports do not count,
-/// because their contacts show the load. hitting, sleeping: indices.
+/// Returns true if a sphere hits a sleeper in the step. A slow sphere that only presses the sleeper onto its supports
+/// does not count, because the impulse of the contact shows this load. hitting, sleeping: particle indices.
 bool LastingContacts::hits_sleeper(std::size_t hitting, std::size_t sleeping, const TimeSpan& step) const {
     const Particles& particles = parts_.store.particles();
     const double duration = step.end - step.begin;
@@ -141,14 +142,15 @@ bool LastingContacts::hits_sleeper(std::size_t hitting, std::size_t sleeping, co
     const Vec3& velocity = particles.velocity[hitting];
     const Vec3 towards = particles.position[sleeping] - particles.position[hitting];
     const double gap = length(towards) - particles.radius[hitting] - particles.radius[sleeping];
-    if (gap > duration * (length(velocity) + gained)) return false;  // not in this step
+    if (gap > duration * (length(velocity) + gained)) return false;  // the spheres do not meet in this step
     const double resting = rules().settings.resting_speed;
     const double slow = std::max(resting, std::sqrt(2.0 * pull * kWakingFall * particles.radius[hitting]));
     if (length(velocity) > slow) return true;
     return is_aside(sleeping, towards, step.begin) && dot(velocity, towards) > resting * length(towards);
 }
 
-/// Returns true if a push in a direction moves a sleeper that only friction holds in that direction.
+/// Returns true if only friction opposes a push on a sleeper, because the push is not directed onto the supports of the
+/// sleeper.
 bool LastingContacts::is_aside(std::size_t sleeping, const Vec3& direction, double time) const {
     const Vec3 pull = rules().forces.acceleration(parts_.store.force_input(sleeping, time));
     return pull == Vec3{} || dot(direction, pull) < kOntoSupports * length(direction) * length(pull);
@@ -157,7 +159,7 @@ bool LastingContacts::is_aside(std::size_t sleeping, const Vec3& direction, doub
 bool LastingContacts::wake_hit_sleepers(const PairPlans& plans, const TimeSpan& step) {
     if (sleeping_islands_.empty() || are_children_) return false;
     std::vector<std::uint64_t> hit;
-    double largest = 1.0;  // ratio of the radii of a sphere and the sleeper that it hits
+    double largest = 1.0;  // largest ratio of a sphere's radius to that of the sleeper that it hits
     for (std::size_t n = 0; n < plans.pairs().size(); ++n) {
         const NeighbourPair& pair = plans.pairs()[n];
         if (!plans.may_meet(n) || is_asleep(pair.first) == is_asleep(pair.second)) continue;
@@ -168,8 +170,8 @@ bool LastingContacts::wake_hit_sleepers(const PairPlans& plans, const TimeSpan& 
         hit.push_back(particles.id[first_ + sleeping]);
         largest = std::max(largest, particles.radius[first_ + hitting] / particles.radius[first_ + sleeping]);
     }
-    // A large sphere pushes as many small ones as it covers. They wake at once, because each further waking repeats the
-    // whole solution.
+    // A large sphere pushes all small spheres that it covers. They are woken in one call, because each further call
+    // repeats the whole solution.
     wake(hit, step.begin, static_cast<int>(std::min(largest, kMostWokenContacts)));
     return !hit.empty();
 }
@@ -296,13 +298,13 @@ void LastingContacts::put_to_sleep(std::span<const ContactIslandTrace* const> tr
                 contacts.push_back(entry);
         }
     }
-    // All in one call, because each call visits all sleepers.
+    // Adds all spheres in one call, because each call visits all sleepers.
     if (falling.empty()) return;
     sleeping_islands_.add(falling, contacts, weights);
     sleeping_islands_.join(touching);
 }
 
-/// Needed only among moving colliders, where the verifier follows the time of every particle.
+/// Does nothing without moving colliders, because only among them the verifier follows the time of every particle.
 void LastingContacts::check_sleepers(const TimeSpan& step, std::vector<BlockRecord>& blocks) const {
     if (sleeping_islands_.empty() || are_children_ || rules().bodies.empty()) return;
     BlockRecord& record = blocks.emplace_back();
@@ -334,7 +336,7 @@ bool LastingContacts::is_pressed_more(const WarmStartMemory::Entry& entry, const
     return entry.impulse.normal > kMorePressed * (sleeping_islands_.load_of(sleeper) + weights);
 }
 
-/// Wakes sleepers that have lost a sphere that leant on them or held them, and sleepers that others overlap.
+/// Wakes sleepers that a touching sphere has left, and sleepers that another sphere overlaps.
 void LastingContacts::wake_unsupported(const TimeSpan& step) {
     if (sleeping_islands_.empty()) return;
     std::vector<std::uint64_t> left;

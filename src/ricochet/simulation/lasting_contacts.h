@@ -1,9 +1,9 @@
 /// \file
-/// Private to the simulation: the state of contact islands that lasts from step to step. It consists of the impulses of
-/// their contacts, and of the spheres that sleep.
+/// Private to the simulation: the state of contact islands that is kept between steps. It consists of the impulses of
+/// contacts and of the sleeping spheres.
 ///
-/// Spheres that have been at rest in a contact island for a while sleep (SleepingIslands). They stay until they are
-/// hit, or until the load on them differs from that at which they fell asleep.
+/// Spheres that have been at rest in a contact island for several steps sleep (SleepingIslands). They sleep until
+/// another sphere hits them, or until the load on them differs from the load at which they fell asleep.
 #pragma once
 
 #include <cstdint>
@@ -21,16 +21,17 @@
 
 namespace ricochet {
 
-/// Results of a contact island for later steps; empty for other islands.
+/// Results of a contact island for later steps. Empty for event-driven islands.
 struct ContactIslandTrace {
-    std::vector<WarmStartMemory::Entry> pressed;       ///< impulses of its contacts
+    std::vector<WarmStartMemory::Entry> pressed;       ///< impulses of the island's contacts
     std::vector<SleepingIslands::SleepCounter> still;  ///< spheres that have not moved
     std::vector<std::uint64_t> falling_asleep;         ///< ids, ascending
-    std::vector<SleepingIslands::Weight> weights;      ///< of the spheres that fall asleep
-    std::vector<SleeperImpulse> onto_sleepers;         ///< by spheres that are awake
-    std::vector<SleeperImpulse> stopped;               ///< momentum with which spheres fall asleep
-    std::vector<ContactKey> touching;                  ///< if some fall asleep: pairs that touch, with or without load
-    bool is_unsolved = false;                          ///< the solver did not reach the tolerance
+    std::vector<SleepingIslands::Weight> weights;      ///< weights of the spheres that fall asleep
+    std::vector<SleeperImpulse> onto_sleepers;         ///< impulses of awake spheres on sleepers
+    std::vector<SleeperImpulse> stopped;               ///< momentum that spheres lose when they fall asleep
+    std::vector<ContactKey> touching;                  ///< pairs that touch, with or without load; empty if no sphere
+                                                       ///< falls asleep
+    bool is_unsolved = false;                          ///< true if the solver did not reach the tolerance
 };
 
 class LastingContacts {
@@ -38,34 +39,35 @@ public:
     explicit LastingContacts(const PairParts& parts) : parts_(parts), loads_(parts) {}
 
     [[nodiscard]] const SleepingIslands& sleeping_islands() const { return sleeping_islands_; }
-    /// Begins a step for the particles of a range, and finds the sleepers among them. Wakes sleepers next to one that
-    /// is gone, and sleepers that colliders come near.
+    /// Begins a step for the particles of a range, and finds the sleepers among them. Wakes sleepers next to removed
+    /// sleepers, and sleepers near moving colliders.
     void begin(const ParticleRange& range, const TimeSpan& step);
     /// Returns the state that plans depend on. Must be called again after sleepers have woken.
     [[nodiscard]] const PairTraces& find_traces();
-    /// Wakes sleepers that are hit according to the plans. Returns false if there are none.
+    /// Wakes the sleepers that other spheres hit according to the plans. Returns false if no sleeper is hit.
     [[nodiscard]] bool wake_hit_sleepers(const PairPlans& plans, const TimeSpan& step);
-    /// Returns the sleepers that a solved island has hit or pushed. The island treated them as walls. If there are any,
-    /// they must be woken, and the step must begin again.
+    /// Returns the sleepers that spheres of a solved island have hit or pushed. The solution treated these sleepers as
+    /// walls. The caller must wake them, and begin the step again.
     [[nodiscard]] std::vector<std::uint64_t> loaded_sleepers(std::span<const PairImpactRecord> impacts,
                                                              const ContactIslandTrace& trace,
                                                              const TimeSpan& step) const;
-    /// Wakes sleepers, and those connected to them by so many contacts in a row, at a time, in s. If a step wakes
-    /// sleepers again and again, it also wakes sleepers farther away.
+    /// Wakes sleepers at a time, in s. Also wakes other sleepers that at most `contacts` contacts in a row connect to
+    /// them. Repeated calls in a step reach farther.
     void wake(const std::vector<std::uint64_t>& particles, double time, int contacts = 1);
-    /// Returns true if a particle of the range, by its index in the particles' arrays, sleeps in an island.
+    /// Returns true if a particle of the range sleeps in an island. i: index in the particles' arrays.
     [[nodiscard]] bool sleeps(std::size_t i) const { return traces_.is_asleep[i - first_] != 0; }
-    /// Returns a flag per particle: contacts of the last step's contact islands support it, and have not thrown it off.
+    /// Returns one flag per particle. It is 1 if a contact in a contact island of the last step supports the particle
+    /// without a rebound.
     [[nodiscard]] std::vector<std::uint8_t> pressing() const;
     /// Returns the contacts of the last step's contact islands.
     [[nodiscard]] const WarmStartMemory& memory() const { return memory_; }
 
-    /// Puts members of a contact island to sleep by changing their plans. They have been at rest for long, and no
-    /// sphere that stays awake pushes them or rests on them.
+    /// Puts members of a contact island to sleep by changing their plans. These members have been at rest for several
+    /// steps, and no awake sphere pushes them or rests on them.
     void plan_sleep(std::span<const ContactIslandMember> members, ContactIsland& island, const TimeSpan& step,
                     ContactIslandTrace& trace) const;
 
-    /// Ends a step with these contact islands and impacts.
+    /// Ends a step. Stores the results of its contact islands, and passes its impacts on to sleepers.
     void end(std::span<const ContactIslandTrace* const> traces, std::span<const PairImpactRecord> impacts,
              const TimeSpan& step);
     /// Tells the verifier, if there is one, that sleepers have kept their positions.
@@ -73,14 +75,14 @@ public:
     /// Wakes all sleepers at a time, in s.
     void wake_all(double time);
 
-    /// Saves or restores the state; a: an archive of core/binary_archive.h.
+    /// Saves or restores the state. a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a) {
         memory_.archive(a);
         sleeping_islands_.archive(a);
     }
 
-    /// Returns false for a state that no run leaves behind. next_id: id of the next particle.
+    /// Returns false if no run can produce the present state. next_id: id of the next particle.
     [[nodiscard]] bool is_sound(std::uint64_t next_id) const;
 
 private:
@@ -98,13 +100,13 @@ private:
     [[nodiscard]] bool is_pressed_more(const WarmStartMemory::Entry& entry, const TimeSpan& step) const;
 
     PairParts parts_;
-    std::size_t first_ = 0;      // first particle of the range; numbers count from it
-    bool are_children_ = false;  // the range holds particles that were spawned in this step
+    std::size_t first_ = 0;      // first particle of the range; particle numbers are relative to it
+    bool are_children_ = false;  // true if the particles of the range were spawned in this step
     PairTraces traces_;
     WarmStartMemory memory_;
     SleepingIslands sleeping_islands_;
     TransmittedLoads loads_;
-    int wakings_ = 0;  // calls of wake() in this step
+    int wakings_ = 0;  // number of calls of wake() in this step
 };
 
 }  // namespace ricochet

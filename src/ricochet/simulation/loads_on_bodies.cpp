@@ -73,7 +73,8 @@ double LoadsOnBodies::heaviness_on(std::size_t body, const ColliderLoad& load) c
     return load.mass * dot(bodies_[body].velocity_change(wrench, load.particle_center), load.impulse) / size;
 }
 
-// The residual of the first load defines the direction in which loads are too small.
+// Stores a tried load as the low or the high end of the search. A load is too small if its residual has the direction
+// of the first residual.
 void LoadRelaxation::keep(const DrivenBody& body, const Wrench& planned, const Wrench& lacks) {
     const Tried tried{planned, lacks, std::sqrt(product(body, lacks, lacks))};
     const bool is_low = !low_ || product(body, lacks, low_->lacks) >= 0.0;
@@ -94,9 +95,9 @@ Wrench LoadRelaxation::next(const DrivenBody& body, const Wrench& planned, const
         const double part = both > 0.0 ? low_->size / both : 0.5;
         return sum(low_->load, part, sum(high_->load, -1.0, low_->load));
     }
-    if (!(heaviness > 0.0)) return {};  // the body escapes from the load
+    if (!(heaviness > 0.0)) return {};  // the body escapes from the particles
     double factor = 1.0 / (1.0 + heaviness_);
-    if (before) {  // Aitken's method: along the line through the last two
+    if (before) {  // Aitken's method, on the line through the last two loads
         const Wrench change = sum(lacks, -1.0, before->lacks);
         const double size = product(body, change, change);
         const double step =
@@ -106,7 +107,7 @@ Wrench LoadRelaxation::next(const DrivenBody& body, const Wrench& planned, const
     return sum(planned, factor, lacks);
 }
 
-// The load is taken to change evenly from that of the first plan.
+// Assumes that the load changes linearly in time, from the load of the first plan to the fitting load.
 Wrench LoadRelaxation::shortened(double part) {
     begin_search();
     return sum(first_, part, sum(fitting_, -1.0, first_));

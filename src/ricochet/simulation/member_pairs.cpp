@@ -6,7 +6,7 @@
 namespace ricochet {
 namespace {
 
-/// Fewest members whose pairs are kept by the particles' numbers. For fewer, a new search is as fast.
+/// Smallest number of members whose pairs are stored by particle numbers. For fewer members, a new search is as fast.
 constexpr std::size_t kMany = 512;
 
 /// Largest range of the particles' numbers, as a multiple of the number of members.
@@ -57,7 +57,7 @@ void MemberPairs::update(std::span<const Box3> boxes, std::span<const std::uint3
     static_cast<void>(near_.update(boxes_, changed_));
 }
 
-/// Sorts by the second numbers, and then by the first, which keeps the order of the second.
+/// Sorts by the second numbers, and then by the first numbers. The second sort keeps the order of the second numbers.
 std::span<const NeighbourPair> MemberPairs::sorted() {
     const std::vector<NeighbourPair>& all = near_.all();
     if (!is_by_particle_) return all;

@@ -12,14 +12,14 @@
 
 namespace ricochet {
 
-/// Pairs of members by their numbers. Members are in the order of their positions, so their numbers change from step to
-/// step. In an island of most particles, pairs are kept by the particles' numbers, so that NeighbourPairs can reuse its
-/// data from step to step. The pairs are the same either way.
+/// Pairs of members, given by member numbers. Members are ordered by position, so their numbers change from step to
+/// step. In an island with most of the particles, pairs are stored by particle numbers instead, so that NeighbourPairs
+/// can reuse its data in the next step. Both methods give the same pairs.
 class MemberPairs {
 public:
     /// Finds the pairs of members whose boxes overlap. boxes: one per member.
     void find(std::span<const IslandMember> members, std::span<const Box3> boxes);
-    /// Finds the pairs again. changed: numbers of the boxes that have changed since the last call, ascending.
+    /// Updates the pairs. changed: numbers of the boxes that have changed since the last call, ascending.
     void update(std::span<const Box3> boxes, std::span<const std::uint32_t> changed);
 
     /// Calls visit(a, b) for all pairs, in any order.
@@ -33,7 +33,7 @@ public:
             }
         }
     }
-    /// Returns the pairs, ascending by (first, second). Valid until the next call.
+    /// Returns the pairs, ascending by (first, second). The result is valid until the next call.
     [[nodiscard]] std::span<const NeighbourPair> sorted();
 
 private:
@@ -41,14 +41,14 @@ private:
 
     NeighbourPairs near_;
     bool is_by_particle_ = false;
-    std::vector<std::uint32_t> slots_;      // of each member: its particle's number minus the lowest one
-    std::vector<std::uint32_t> member_at_;  // member of each slot
+    std::vector<std::uint32_t> slots_;      // per member: its particle number minus the lowest particle number
+    std::vector<std::uint32_t> member_at_;  // per slot: its member
     std::vector<Box3> boxes_;               // of each slot
     std::vector<std::uint32_t> changed_;    // slots
     std::vector<NeighbourPair> by_second_;
     std::vector<NeighbourPair> sorted_;
-    std::vector<std::uint32_t> first_ends_;   // of each member: end of its pairs in sorted_
-    std::vector<std::uint32_t> second_ends_;  // of each member: end of its pairs in by_second_
+    std::vector<std::uint32_t> first_ends_;   // per member: end of its pairs in sorted_
+    std::vector<std::uint32_t> second_ends_;  // per member: end of its pairs in by_second_
 };
 
 }  // namespace ricochet

@@ -12,26 +12,26 @@
 namespace ricochet {
 namespace {
 
-// Bytes, measured with runs of a million particles and meshes of two million triangles. Local: they only estimate
-// memory.
-constexpr double kProgram = 12e6;             // libraries, threads
-constexpr double kParticle = 380.0;           // in the arrays, in two frames, and as a value at its birth
-constexpr double kAttributeComponent = 32.0;  // of a particle, likewise
-constexpr double kFamily = 400.0;             // with children: their origin, and the lists from which children are made
-constexpr double kCloudParticle = 300.0;      // with clouds: its parent, and the path of a parent
-constexpr double kSide = 16.0;                // memory of penalty and similar responses for a collider
-constexpr double kVerifiedParticle = 90.0;    // by options.verify
-constexpr double kMeetingParticle = 1500.0;   // of spheres that meet: boxes, pairs, islands, contacts, as counted
-constexpr double kTriangle = 378.0;           // of a mesh with its search structures, while they are made
-constexpr double kVerifiedTriangle = 160.0;   // by options.verify
-constexpr double kContact = 412.0;            // a record, and its row in the log
-constexpr double kMemoryEstimateMostContacts = 500'000.0;  // most rows that the log gathers besides a step's rows
-constexpr double kJoinedParticle = 800.0;    // like kParticle, with the data that its rope or cloth is made from
-constexpr double kSpring = 200.0;            // with the data that it is made from
+// Sizes in bytes, measured with runs of a million particles and meshes of two million triangles. Local: the sizes only
+// serve an estimate of memory.
+constexpr double kProgram = 12e6;             // libraries and threads
+constexpr double kParticle = 380.0;           // a particle in the arrays, in two frames, and as a value at its birth
+constexpr double kAttributeComponent = 32.0;  // a component of an attribute, stored like the particle
+constexpr double kFamily = 400.0;             // with children, per particle: its origin, and the lists of its children
+constexpr double kCloudParticle = 300.0;      // with clouds, per particle: its parent, and the path of a parent
+constexpr double kSide = 16.0;                // per particle and collider: state of penalty and similar responses
+constexpr double kVerifiedParticle = 90.0;    // a particle with options.verify
+constexpr double kMeetingParticle = 1500.0;   // per colliding sphere: boxes, pairs, islands and contacts, by counting
+constexpr double kTriangle = 378.0;           // a triangle and its search structures, during construction
+constexpr double kVerifiedTriangle = 160.0;   // a triangle with options.verify
+constexpr double kContact = 412.0;            // a contact record, and its row in the log
+constexpr double kMemoryEstimateMostContacts = 500'000.0;  // most buffered log rows, without the rows of one step
+constexpr double kJoinedParticle = 800.0;    // like kParticle, with the data from which its rope or cloth is built
+constexpr double kSpring = 200.0;            // a spring, with the data from which it is built
 constexpr double kStandingTriangle = 238.0;  // like kTriangle, after the mesh has been read
-constexpr double kCoupledParticle = 900.0;   // with forces between particles: its plan, and the lists for the forces
-constexpr double kImplicitParticle = 390.0;  // in the matrix of implicit_euler
-constexpr double kImplicitSpring = 1200.0;   // likewise, with its factors
+constexpr double kCoupledParticle = 900.0;   // with forces between particles, per particle: its plan and force lists
+constexpr double kImplicitParticle = 390.0;  // a particle in the matrix of implicit_euler
+constexpr double kImplicitSpring = 1200.0;   // a spring in the matrix of implicit_euler and in its factors
 
 double mean_of(const MeanSpread& pair) { return std::max(0.0, pair.mean); }
 
@@ -46,7 +46,7 @@ double positions_of(const ColliderShape& shape) {
     return mesh != nullptr && mesh->motion ? static_cast<double>(mesh->motion->memory_bytes()) : 0.0;
 }
 
-/// Returns the bytes of the estimate that a setup itself holds, or that were needed while it was made.
+/// Returns the bytes of the estimate that the setup already contains, or that its construction has needed.
 double bytes_taken(const SimulationSetup& setup) {
     constexpr double kStillToCome = kParticle - static_cast<double>(sizeof(Particle));
     const double particles = static_cast<double>(setup.particles.size());
@@ -76,7 +76,8 @@ double rate_of(const EmitterDescription& emitter, const SimulationSetup& setup) 
     return mean_of(emitter.rate) + per_frame * setup.options.frame_rate;
 }
 
-/// Returns the number of an emitter's particles that certainly live at one time. The number of children is not known.
+/// Returns the number of an emitter's particles that certainly live at the same time. Returns 0 for children, because
+/// their number is not known.
 double sure_population(const EmitterDescription& emitter, const SimulationSetup& setup) {
     const SimulationOptions& options = setup.options;
     if (emitter.parent || !(emitter.start < options.duration)) return 0.0;
@@ -98,7 +99,7 @@ bool has_children(const SimulationSetup& setup) {
                        [](const EmitterDescription& emitter) { return emitter.parent.has_value(); });
 }
 
-/// Lists the needs of a setup.
+/// Collects the memory needs of a setup.
 class Estimator {
 public:
     explicit Estimator(const SimulationSetup& setup)
@@ -148,7 +149,8 @@ private:
         for (std::size_t k = 0; k < setup_.colliders.size(); ++k) {
             const ColliderShape& shape = setup_.colliders[k].shape;
             add({MemoryNeed::Part::collider, k}, triangles_of(shape), each);
-            // Given and placed positions. options.verify needs another copy, with boxes of the same size.
+            // Two copies are the given positions and the positions in the world. options.verify needs a third copy, and
+            // boxes of the same size.
             const double copies = setup_.options.verify ? 4.0 : 2.0;
             if (positions_of(shape) > 0.0) estimate_.needs.back().bytes += copies * positions_of(shape);
         }

@@ -1,8 +1,9 @@
 /// \file
-/// Private to the library: estimate of the memory of a simulation from its setup, before it is made.
+/// Private to the library: estimate of the memory of a simulation from its setup, before the simulation is made.
 ///
-/// Numbers are about the peak memory of a run with frames, measured (the peak_memory_bytes of summaries) and rounded
-/// up. They count only certain needs: particles that surfaces, bounds or shattering may remove count for one step.
+/// The numbers approximate the peak memory of a run with frames. They were measured as peak_memory_bytes of summaries,
+/// and rounded up. Only certain needs are counted. If surfaces, bounds or shattering can remove particles, the births
+/// of only one step are counted.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +16,7 @@
 
 namespace ricochet {
 
-/// A need for memory by a part of a setup.
+/// Memory that one part of a setup needs.
 struct MemoryNeed {
     enum class Part { particles, springs, emitter, collider, contacts } part = Part::particles;
     std::size_t number = 0;   ///< index of the emitter or collider
@@ -26,11 +27,11 @@ struct MemoryNeed {
 /// Memory that a simulation needs.
 struct MemoryEstimate {
     std::vector<MemoryNeed> needs;
-    double taken = 0.0;  ///< bytes of them that the setup itself holds, or that its construction needed
+    double taken = 0.0;  ///< bytes of the needs that the setup already contains, or that its construction has needed
 
     /// Returns the bytes of all needs and of the program itself.
     [[nodiscard]] double bytes() const;
-    /// Returns the bytes without those taken already.
+    /// Returns the bytes that are still to be allocated.
     [[nodiscard]] double bytes_to_come() const { return bytes() - taken; }
     /// Returns the largest need; needs must not be empty.
     [[nodiscard]] const MemoryNeed& largest() const;
@@ -45,15 +46,16 @@ void require_memory(const SimulationSetup& setup);
 /// Returns the bytes of an additional particle in a simulation of this setup.
 [[nodiscard]] double bytes_per_particle(const SimulationSetup& setup);
 
-/// Returns how many more fit below a limit.
+/// Returns the number of particles that can be added up to a limit.
 [[nodiscard]] inline std::uint64_t room_below(std::uint64_t most, std::uint64_t living) {
     return most - std::min(most, living);
 }
 
-/// The number of particles that the memory holds. It decides only whether a run continues, never its results.
+/// Number of particles that fit into memory. The number decides only whether a run continues, and never affects
+/// results.
 class ParticleMemory {
 public:
-    /// bytes_each: of an additional particle. Until measure() is called, any number of particles fits.
+    /// bytes_each: memory of an additional particle, in bytes. Until measure() is called, any number of particles fits.
     explicit ParticleMemory(double bytes_each) : bytes_each_(bytes_each) {}
 
     [[nodiscard]] double bytes_each() const { return bytes_each_; }
@@ -62,7 +64,7 @@ public:
     /// Returns the number of particles that may live at a time; one more ends the run.
     [[nodiscard]] std::uint64_t most() const { return most_; }
     [[nodiscard]] std::uint64_t room(std::uint64_t living) const { return room_below(most_, living); }
-    /// Throws RunError, because births would make more particles than fit.
+    /// Throws RunError with the message that births would make more particles than fit.
     [[noreturn]] void refuse_to_grow(std::uint64_t living) const;
 
 private:

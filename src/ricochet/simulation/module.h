@@ -1,10 +1,11 @@
 /// \file
-/// Private to the simulation: a part of a run that the stages of a step call, and the list of these parts.
+/// Private to the simulation: modules, which are parts of a run that the stages of a step call, and the list of
+/// modules.
 ///
-/// A module owns the objects of its capability. The stages call it once for all particles of a generation or a block,
-/// never for a single particle. Objects that take part in the motion of single particles are in MoveObservers. The list
-/// in modules.cpp has all modules in the order of their calls. A new module needs its class, a line in that list, and
-/// tests.
+/// A module owns the objects of one capability. A stage calls a module once for all particles of a generation or a
+/// block, never for a single particle. Objects that take part in the motion of single particles are in MoveObservers.
+/// The list in modules.cpp contains all modules in the order of their calls. A new module needs its class, a line in
+/// that list, and tests.
 #pragma once
 
 #include <algorithm>
@@ -23,9 +24,9 @@ namespace ricochet {
 
 class StateHash;
 
-/// See the top of this file. Every function does nothing unless a module overrides it. A step calls them in the order
-/// of declaration; before_generation() to spawn() once for each spawn generation, and plan() to record() once for each
-/// of its substeps.
+/// Base class of modules. A function that a module does not override does nothing. A step calls the functions in the
+/// order of declaration. It calls before_generation() to spawn() once per spawn generation, and plan() to record() once
+/// per substep of the generation.
 class Module {
 public:
     Module() = default;
@@ -37,24 +38,26 @@ public:
 
     virtual void begin_step(const TimeSpan& /*step*/) {}
     virtual void before_generation(const ParticleRange& /*generation*/, const TimeSpan& /*step*/) {}
-    /// Plans the next substep and returns its end, in s, at most rest.end. rest: time left of the step, or the substep
-    /// that an earlier module has planned.
+    /// Plans the next substep. Returns its end, in s, which is at most rest.end. rest: remaining time of the step, or
+    /// the substep that an earlier module has planned.
     virtual double plan(const ParticleRange& /*generation*/, const TimeSpan& rest) { return rest.end; }
     virtual void before_substep(const ParticleRange& /*generation*/, const TimeSpan& /*substep*/) {}
-    /// All other particles of the generation have been moved. blocks: records of the substep so far.
+    /// Called after the particles that no module moves. Modules move their own particles here. blocks: records of the
+    /// substep so far.
     virtual void after_substep(const ParticleRange& /*generation*/, const TimeSpan& /*substep*/,
                                std::vector<BlockRecord>& /*blocks*/) {}
-    /// All particles of the generation have been moved. Corrects their velocities, or throws if the result is no state
-    /// with which a run can continue.
+    /// Corrects velocities after all particles of the generation have been moved. Throws if a run cannot continue with
+    /// the result.
     virtual void correct(const ParticleRange& /*generation*/, const TimeSpan& /*substep*/,
                          std::vector<BlockRecord>& /*blocks*/) {}
-    /// Takes the records of the substep. loads: of all blocks; modules can complete them before they are recorded.
+    /// Processes the records of the substep. loads: loads of all blocks. Modules can complete the loads before they are
+    /// recorded.
     virtual void record(const ParticleRange& /*generation*/, const std::vector<BlockRecord>& /*blocks*/,
                         std::vector<ColliderLoad>& /*loads*/) {}
     virtual void after_generation(const ParticleRange& /*generation*/, const TimeSpan& /*step*/) {}
-    /// Adds the particles that the generation has spawned. Returns true if there are any, on any rank.
+    /// Adds the particles that the generation has spawned. Returns true if any rank has added particles.
     virtual bool spawn(const TimeSpan& /*step*/) { return false; }
-    /// Removes particles at the end of a step, at a time in s, or prepares that others remove them.
+    /// Removes particles at the end of a step, at a time in s, or prepares their removal by other code.
     virtual void retire(double /*time*/) {}
     /// Checks the state at the end of a step.
     virtual void verify(const TimeSpan& /*step*/) {}
@@ -63,28 +66,29 @@ public:
 
     // Changes of the population. The store has changed already.
 
-    /// One particle was appended.
+    /// Called after one particle was appended.
     virtual void append() {}
-    /// The particles whose flag is not 0 were kept.
+    /// Called after the particles whose flag is 0 were removed.
     virtual void compact(const std::vector<std::uint8_t>& /*keep*/) {}
-    /// Particles were added, removed or replaced: indices and arrays are new.
+    /// Called after particles were added, removed or replaced, so that indices and arrays have changed.
     virtual void bind() {}
-    /// The run continues from a restored state at a time, in s.
+    /// Called when the run continues from a restored state at a time, in s.
     virtual void restart(double /*time*/) {}
-    /// The forces have changed, at a time in s. Sleeping particles wake.
+    /// Wakes sleeping particles at a time, in s, because the forces have changed.
     virtual void wake_all(double /*time*/) {}
 
     // State.
 
     /// Returns true if the module does not need the positions of particles in free flight in every step.
     [[nodiscard]] virtual bool allows_deferred_steps() const { return false; }
-    /// Returns the reason why no run can leave particle i in its restored state, or null.
+    /// Returns the reason why no run can produce the restored state of particle i, or null if the state is valid.
     [[nodiscard]] virtual const char* fault_of(std::size_t /*i*/) const { return nullptr; }
-    /// Returns the reason why no run can leave the module in its restored state at a time, in s, or null.
+    /// Returns the reason why no run can produce the restored state of the module at a time, in s, or null if the state
+    /// is valid.
     [[nodiscard]] virtual const char* fault(double /*time*/) const { return nullptr; }
     /// Adds the settings of the module to the fingerprint of a saved state.
     virtual void add_to_fingerprint(StateHash& /*hash*/) const {}
-    /// Saves or restores the state of particles, beside that of the store.
+    /// Saves or restores states of particles that the store does not contain.
     virtual void archive_particles(BinaryWriter& /*a*/) {}
     virtual void archive_particles(BinaryReader& /*a*/) {}
     /// Saves or restores the rest of the module's state.
@@ -101,7 +105,7 @@ public:
     void each(const Call& call) const {
         for (const std::unique_ptr<Module>& module : modules_) call(*module);
     }
-    /// Returns the module of a class, or null if the run does not have it.
+    /// Returns the module of a class, or null if the run has no such module.
     template <class Kind>
     [[nodiscard]] Kind* find() const {
         for (const std::unique_ptr<Module>& module : modules_) {
@@ -114,12 +118,12 @@ public:
         return std::all_of(modules_.begin(), modules_.end(),
                            [](const auto& module) { return module->allows_deferred_steps(); });
     }
-    /// Plans a substep of a generation: each module can shorten it.
+    /// Plans a substep of a generation. Each module can shorten the substep.
     [[nodiscard]] TimeSpan plan(const ParticleRange& generation, TimeSpan rest) const {
         for (const std::unique_ptr<Module>& module : modules_) rest.end = module->plan(generation, rest);
         return rest;
     }
-    /// Adds the particles that a generation has spawned. Returns true if there are any, on any rank.
+    /// Adds the particles that a generation has spawned. Returns true if any rank has added particles.
     [[nodiscard]] bool spawn(const TimeSpan& step) const {
         bool has_spawned = false;
         for (const std::unique_ptr<Module>& module : modules_) has_spawned = module->spawn(step) || has_spawned;

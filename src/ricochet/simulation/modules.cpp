@@ -16,8 +16,8 @@
 namespace ricochet {
 namespace {
 
-/// Wakes sleeping particles near moving colliders. This function wakes no other sleeping particle, because all supports
-/// of the others are at rest.
+/// Wakes sleeping particles near moving colliders. Other sleeping particles stay asleep, because all their supports are
+/// at rest.
 class WakingModule final : public Module {
 public:
     WakingModule(const MovingColliders& moving, const ModuleParts& parts) : moving_(moving), parts_(parts) {}
@@ -76,14 +76,14 @@ private:
     RunCheck check_;
 };
 
-/// Returns null if no emitter has a parent.
+/// Returns the module, or null if no emitter has a parent.
 std::unique_ptr<ChildrenModule> make_children(const ModuleParts& parts) {
     const bool has_children = std::any_of(parts.emitters.begin(), parts.emitters.end(),
                                           [](const Emitter& e) { return e.description().parent.has_value(); });
     return has_children ? std::make_unique<ChildrenModule>(parts) : nullptr;
 }
 
-/// Returns null if temperatures do not change.
+/// Returns the module, or null if temperatures do not change.
 std::unique_ptr<HeatStage> make_heat(std::optional<HeatSettings>& heat, const ModuleParts& parts) {
     if (!heat) return nullptr;
     auto stage = std::make_unique<HeatStage>(std::move(*heat), parts.population.store(), parts.response.rules().forces,
@@ -92,7 +92,7 @@ std::unique_ptr<HeatStage> make_heat(std::optional<HeatSettings>& heat, const Mo
     return stage;
 }
 
-/// Returns null without clouds.
+/// Returns the module, or null without clouds.
 std::unique_ptr<CloudMotion> make_clouds(const ModuleParts& parts, const Retirement& retirement,
                                          ChildrenModule* children) {
     if (std::none_of(parts.emitters.begin(), parts.emitters.end(),
@@ -105,7 +105,7 @@ std::unique_ptr<CloudMotion> make_clouds(const ModuleParts& parts, const Retirem
     return clouds;
 }
 
-/// Returns null if spheres do not meet.
+/// Returns the module, or null if spheres pass through each other.
 std::unique_ptr<PairMotion> make_pairs(const ModuleParts& parts, SpringsModule& springs) {
     if (!parts.options.particle_contacts) return nullptr;
     const PairContactSettings& settings = *parts.options.particle_contacts;
@@ -118,7 +118,7 @@ std::unique_ptr<PairMotion> make_pairs(const ModuleParts& parts, SpringsModule& 
     return pairs;
 }
 
-/// Returns null without counters.
+/// Returns the module, or null without counters.
 std::unique_ptr<CounterTally> make_counters(const SimulationSetup& setup, const ModuleParts& parts) {
     if (setup.counters.empty()) return nullptr;
     auto counters = std::make_unique<CounterTally>(setup.counters, parts.options.response == ResponseKind::exact);

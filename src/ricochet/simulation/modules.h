@@ -34,7 +34,7 @@ struct ModuleParts {
     Population& population;
     const std::vector<Emitter>& emitters;
     ActiveMover& mover;
-    MoveObservers& observers;  ///< modules enter their objects
+    MoveObservers& observers;  ///< modules set the pointers to their objects
 };
 
 /// Adds the children of each generation, and records all births.
@@ -42,11 +42,11 @@ class ChildrenModule final : public Module {
 public:
     explicit ChildrenModule(const ModuleParts& parts);
 
-    /// Sets the clouds, which must outlive it.
+    /// Sets the clouds, which must outlive the module.
     void set_clouds(CloudMotion& clouds);
     /// Returns the particles born in the last step.
     [[nodiscard]] const std::vector<BirthRecord>& births() const { return births_; }
-    /// Forgets the births of a stopped step.
+    /// Discards the births of a stopped step.
     void forget_births() { births_.clear(); }
 
     void begin_step(const TimeSpan& step) override;
@@ -64,20 +64,20 @@ private:
     Offspring offspring_;
     CloudMotion* clouds_ = nullptr;  // null without clouds
     std::vector<BirthRecord> births_;
-    bool is_in_step_ = false;  // users can add particles between steps
+    bool is_in_step_ = false;  // false between steps, when users can add particles
 };
 
-/// Plans the motion of particles that springs, or forces between particles, couple. Children join in the next step.
-/// Every run has this module; it does nothing if no particles are coupled. If ranks share the run, particles with
-/// springs live on the first rank, which plans their motion.
+/// Plans the motion of particles that are coupled by springs or by forces between particles. Children are coupled from
+/// the next step on. Every run has this module, which does nothing without coupled particles. If several ranks share
+/// the run, particles with springs stay on the first rank, which plans their motion.
 class SpringsModule final : public Module {
 public:
-    /// setup: gives springs and forces away.
+    /// setup: its springs and its forces between particles are moved out.
     SpringsModule(SimulationSetup& setup, const ModuleParts& parts);
 
     [[nodiscard]] const CoupledMotion& motion() const { return motion_; }
     [[nodiscard]] const std::vector<SpringFace>& faces() const { return faces_; }
-    /// Sets the spheres that meet each other, which must outlive it.
+    /// Sets the motion of spheres that collide with each other. pairs must outlive the module.
     void set_pairs(const PairMotion& pairs) { pairs_ = &pairs; }
 
     void before_generation(const ParticleRange& generation, const TimeSpan& step) override;
@@ -100,11 +100,11 @@ private:
     ModuleParts parts_;
     CoupledMotion motion_;
     std::vector<SpringFace> faces_;
-    const PairMotion* pairs_ = nullptr;  // null if spheres do not meet each other
+    const PairMotion* pairs_ = nullptr;  // null if spheres pass through each other
 };
 
 /// Moves dynamic bodies. A step is divided into substeps in which planned and actual loads agree. Every run has this
-/// module; it does nothing without bodies.
+/// module, which does nothing without bodies.
 class BodiesModule final : public Module {
 public:
     /// Plans the first step. bodies: see DrivenMotion.
@@ -134,17 +134,18 @@ private:
     DrivenMotion motion_;
 };
 
-/// Divides the particles of a run between its ranks, moves them to other ranks to balance the work, and puts the run
-/// together on the first rank. Particles change ranks after they have made their deferred steps. Nothing else uses the
-/// rank of a particle.
+/// Divides the particles of a run between its ranks, and moves particles to other ranks to balance the work. Gathers
+/// the run on the first rank. Particles change ranks only after their deferred steps have been integrated. No other
+/// code uses the rank of a particle.
 class SharedRun final : public Module {
 public:
     explicit SharedRun(const ModuleParts& parts) : parts_(parts) {}
 
-    /// Keeps the particles of this rank, if all ranks have all particles so far. The first rank keeps the counts.
+    /// Keeps only the particles of this rank. Must be called while all ranks have all particles. Only the first rank
+    /// keeps the counts.
     void take_share();
     [[nodiscard]] const RankBalance& balance() const { return balancer_.balance(); }
-    /// Returns the whole run on the first rank. All ranks call it.
+    /// Returns the whole run on the first rank. All ranks must call this function.
     [[nodiscard]] WholeRun gather(Shown what);
 
     void begin_step(const TimeSpan& step) override;
@@ -160,13 +161,13 @@ private:
 
     ModuleParts parts_;
     RankBalancer balancer_;
-    WorkCounts work_;  // of the substep
+    WorkCounts work_;  // work of the present substep
 };
 
 /// Returns the module that ends a run in which a particle was accelerated beyond kMaxSpeed.
 [[nodiscard]] std::unique_ptr<Module> make_runaways(const ModuleParts& parts);
 
-/// Adds the modules of a run, in the order of their calls. setup: gives the settings of modules away.
+/// Adds the modules of a run, in the order of their calls. setup: the settings of modules are moved out.
 void add_modules(ModuleList& modules, SimulationSetup& setup, const ModuleParts& parts);
 
 }  // namespace ricochet

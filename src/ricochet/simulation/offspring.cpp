@@ -22,11 +22,11 @@ constexpr std::size_t kBlock = 256;
 
 }  // namespace
 
-/// Path of one particle in one pass, as flights between knots.
+/// Path of one particle between before_move() and after_move(), as flights between knots.
 struct Offspring::Trajectory {
     using Knot = FlightKnot;
-    Particle particle;      ///< with the last state
-    std::size_t entry = 0;  ///< index from first_ on
+    Particle particle;      ///< the particle in its last state
+    std::size_t entry = 0;  ///< index relative to first_
     std::vector<Knot> knots;
     std::span<const ContactRecord> records;
     bool shattered = false;
@@ -114,7 +114,7 @@ Offspring::Trajectory Offspring::trajectory_of(const Particles& particles, std::
     trajectory.records = records;
     const PhaseState start{positions_[i - first_], velocities_[i - first_]};
     if (clouds_ != nullptr) {
-        const auto known = clouds_->knots_of(particles.id[i]);  // in a cloud they contain the impacts too
+        const auto known = clouds_->knots_of(particles.id[i]);  // knots of cloud particles contain the impacts too
         trajectory.knots.assign(known.begin(), known.end());
     }
     if (trajectory.knots.empty()) trajectory.knots = flight_knots(particles, i, start, from, to, records);
@@ -124,8 +124,8 @@ Offspring::Trajectory Offspring::trajectory_of(const Particles& particles, std::
     return trajectory;
 }
 
-// Puts the births beyond `most` into one spawn generation. They are all refused, because the earlier ones take all the
-// room.
+// Puts the births beyond `most` into one spawn generation. All of them are refused, because the earlier births fill the
+// population.
 void Offspring::add_life(const Emitter& emitter, const Trajectory& trajectory, std::uint64_t most,
                          std::vector<SpawnGeneration>& spawn_generations) const {
     thread_local ContactScratch scratch;
@@ -147,8 +147,8 @@ void Offspring::add_impacts(const Emitter& emitter, const Trajectory& trajectory
         const bool is_last = &record == &trajectory.records.back();
         const double impulse = record.mass * length(record.velocity_after - record.velocity_before);
         const bool ends_here = rule.share && trajectory.shattered && is_last;
-        // A shattering parent has births only at its end. If its generation is too deep to shatter, they are refused
-        // here.
+        // A parent that can shatter has births only when it shatters. If its generation is too deep to shatter, the
+        // births are refused here.
         const bool refused = rule.share && origin.generation >= limits_.max_depth && impulse >= rule.threshold_impulse;
         if (!ends_here && !refused && (rule.share || impulse < rule.threshold_impulse)) continue;
         std::uint32_t count = children_of_event(emitter, trajectory.particle, origin.birth_impacts++);
@@ -169,8 +169,9 @@ void Offspring::add_death(const Emitter& emitter, const Trajectory& trajectory,
     std::uint32_t count = children_of_event(emitter, trajectory.particle, 0);
     if (rule.share) count = std::max(count, 1U);
     const Trajectory::Knot& last = trajectory.knots.back();
-    // Children of a particle that an absorbing surface has stopped get the velocity of arrival. Fragments have no
-    // velocity: the parent's momentum has gone into the surface, and would go there again.
+    // Children of a parent that a surface has absorbed start with the parent's velocity of arrival. Fragments of this
+    // parent start at rest. The surface has received the parent's momentum already, and must not receive it again from
+    // the fragments.
     const bool absorbed = !trajectory.records.empty() && last.time == trajectory.records.back().time;
     spawn_generations.push_back({last.time, emitter.number(), 0, count, rule.share,
                                  trajectory.at(last, absorbed && !rule.share ? last.before : last.after),
@@ -213,7 +214,8 @@ std::vector<Child> Offspring::after_move(Particles& particles, double from, doub
                     add_birth(emitter, trajectory, blocks[block]);
                 }
             }
-            // A SpawnGeneration takes no more memory than a particle that it makes.
+            // Spawn generations are limited like particles, because a SpawnGeneration needs no more memory than a
+            // particle.
             const std::uint64_t more = blocks[block].size() - std::exchange(counted, blocks[block].size());
             if (gathered.fetch_add(more, std::memory_order_relaxed) + more > fitting + count) {
                 parts_.memory.refuse_to_grow(particles.size());
@@ -240,7 +242,7 @@ std::vector<Offspring::Claim> Offspring::claims_of(const std::vector<SpawnGenera
     return claims;
 }
 
-/// Decides for all spawn generations of a pass, in their order, how many children of each may live.
+/// Decides how many children each spawn generation may have. The spawn generations are processed in their order.
 void Offspring::allot(std::vector<Claim>& claims, std::uint64_t living, std::uint64_t most_that_fit,
                       OffspringCounts& counts) const {
     for (Claim& claim : claims) {
@@ -248,7 +250,7 @@ void Offspring::allot(std::vector<Claim>& claims, std::uint64_t living, std::uin
             counts.refused_by_depth += claim.count;
             continue;
         }
-        if (claim.share) --living;  // the parent makes room
+        if (claim.share) --living;  // fragments replace their parent
         const std::uint64_t room = room_below(limits_.most_particles, living);
         const std::uint32_t most = claim.share ? most_fragments(claim.mass) : claim.count;
         claim.allowed = static_cast<std::uint32_t>(
@@ -261,8 +263,8 @@ void Offspring::allot(std::vector<Claim>& claims, std::uint64_t living, std::uin
     }
 }
 
-/// Decides like allot() if ranks share the run: each rank decides for all of them. A parent's spawn generations are on
-/// one rank.
+/// Does the work of allot() if several ranks share the run. Each rank decides for all ranks. The spawn generations of
+/// one parent are on one rank.
 void Offspring::allot_together(std::vector<Claim>& mine, std::size_t here, OffspringCounts& counts) const {
     const auto rank = static_cast<std::uint32_t>(parts_.share.ranks().rank());
     for (std::size_t k = 0; k < mine.size(); ++k) mine[k].rank = rank, mine[k].spawn_generation = k;
@@ -289,7 +291,7 @@ Child Offspring::child_of(const SpawnGeneration& spawn_generation, Particle&& pa
     return {std::move(particle), positions_[spawn_generation.entry], sides, is_fragment, number, std::nullopt};
 }
 
-/// Adds a child of a cloud. If no position is free, its number stays unused.
+/// Adds a child of a cloud. If no position is free, the number of the child stays unused.
 void Offspring::add_cloud_child(const SpawnGeneration& spawn_generation, std::uint32_t ordinal, std::uint64_t number,
                                 std::vector<Child>& children, OffspringCounts& counts) const {
     const auto has_place = [&](const Particle& child) {

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the library: table of the numbers among the options of a simulation, see core/setting.h.
+/// Private to the library: table of the numeric options of a simulation, see core/setting.h.
 #pragma once
 
 #include "ricochet/core/setting.h"

@@ -1,12 +1,13 @@
 /// \file
-/// Private to the simulation: the cores with which spheres born in overlap collide.
+/// Private to the simulation: cores of spheres that are born in overlap.
 ///
-/// A sphere in overlap collides as its core: the largest ball about its centre that overlaps nothing. So the deepest of
-/// its overlaps never deepens, and contact is ordinary contact of a ball without overlap. Nothing pushes the sphere
-/// out. While the sphere touches no surface, its core grows with the distance to the surfaces, but never beyond the
-/// sphere. It never shrinks. A sphere that is free stays without a core. Energies belong to the sphere: its contacts
-/// act at its own surface. A core whose radius is the fraction c of the sphere's radius spins 1 / c times as fast. The
-/// speed of its surface and its energy equal those of the sphere.
+/// In collisions, a core replaces a sphere that overlaps surfaces. The core is the largest ball about the sphere's
+/// centre that overlaps no surface. Therefore the deepest overlap of the sphere never becomes deeper, and contacts are
+/// ordinary contacts of a ball without overlap. No force pushes the sphere out of the overlap. While the sphere touches
+/// no surface, its core grows with the distance to the surfaces, up to the sphere's radius. A core never shrinks. A
+/// sphere that has left its overlap has no core any more. Energies are those of the sphere, because its contacts act at
+/// its own surface. A core whose radius is the fraction c of the sphere's radius spins 1 / c times as fast. The core's
+/// surface speed and energy then equal those of the sphere.
 #pragma once
 
 #include <cstddef>
@@ -18,15 +19,15 @@
 
 namespace ricochet {
 
-/// Cores by particle. Takes no memory until one is set. Several threads may change different particles, except by the
-/// first set().
+/// Cores by particle. The object uses no memory until the first core is set. Several threads may change cores of
+/// different particles, except by the first call of set().
 class OverlapCores {
 public:
     /// Returns true if particle i is in overlap.
     [[nodiscard]] bool has(std::size_t i) const { return !cores_.empty() && cores_[i] >= 0.0; }
-    /// Returns the radius of the core, in m, if has(i). 0: the sphere collides as a point.
+    /// Returns the radius of the core, in m. has(i) must be true. A sphere with a core of radius 0 collides as a point.
     [[nodiscard]] double radius(std::size_t i) const { return cores_[i]; }
-    /// count: number of particles.
+    /// Sets the radius of a core, in m. count: number of particles.
     void set(std::size_t i, double core, std::size_t count) {
         if (cores_.empty()) cores_.assign(count, kNone);
         cores_[i] = core;
@@ -52,7 +53,7 @@ public:
     }
 
 private:
-    // Local: a mark, not a radius.
+    // Local: this value marks particles without a core, and is not a radius.
     static constexpr double kNone = -1.0;
 
     std::vector<double> cores_;  // m

@@ -17,7 +17,8 @@ constexpr std::size_t kPairMotionBlock = 16;
 /// Number of members between the prefetch of a member and its use, because neighbours in space are scattered in memory.
 constexpr std::size_t kPairMotionPrefetchDistance = 6;
 
-/// Returns the rules for the verifier, without the table that moves spheres.
+/// Returns the impact rules for the verifier. They come from the settings and not from the table that moves spheres, so
+/// that the verifier is independent.
 verify::ImpactAudit books_of(const PairParts& parts) {
     const PairContactSettings& settings = parts.settings;
     const ResponseRules& rules = parts.response.rules();
@@ -78,7 +79,8 @@ void PairMotion::before_substep(const ParticleRange& range, const TimeSpan& step
     }
 }
 
-/// Wakes the sleepers that islands have pushed. No results have been stored yet. Returns false if there are none.
+/// Wakes the sleepers that islands have pushed. Must be called before results are stored. Returns false if no sleeper
+/// was pushed.
 bool PairMotion::wake_loaded_sleepers(const TimeSpan& step) {
     std::vector<std::uint64_t> loaded;
     for (const IslandBuilder::Island& island : islands_.all()) {
@@ -112,8 +114,8 @@ void PairMotion::after_substep(const ParticleRange& /*generation*/, const TimeSp
     islands.clear();
 }
 
-/// Records the impacts of a substep, island by island. meetings: the same impacts for the verifier. time: end of the
-/// substep, in s.
+/// Records the impacts of a substep, island by island. meetings: data of the same impacts for the verifier. time: end
+/// of the substep, in s.
 void PairMotion::record_impacts(const std::vector<PairImpactRecord>& impacts, const std::vector<PairMeeting>& meetings,
                                 double time) {
     SimulationStatistics& statistics = recorder_.statistics();
@@ -133,7 +135,7 @@ void PairMotion::write_back(std::vector<IslandMember>& members, const TimeSpan& 
     }
 }
 
-/// Returns the largest overlap of spheres that live at the end of a step, over the smaller radius.
+/// Returns the largest overlap of two spheres that live at the end of a step, divided by the smaller radius.
 double PairMotion::largest_overlap(double time) const {
     const Particles& particles = parts_.store.particles();
     double largest = 0.0;

@@ -2,7 +2,7 @@
 /// Private to the simulation: the motion of spheres that meet each other in a step.
 ///
 /// PairPlans finds the pairs that may meet, IslandBuilder solves their islands, and LastingContacts keeps the state
-/// between steps. Spheres that meet no others are moved like other particles.
+/// between steps. Spheres that meet no other spheres are moved like other particles.
 #pragma once
 
 #include <cstdint>
@@ -21,19 +21,20 @@ namespace ricochet {
 /// Moves spheres that meet each other.
 class PairMotion final : public Module {
 public:
-    /// All must outlive it.
+    /// All arguments must outlive the object.
     PairMotion(const PairParts& parts, RunRecorder& recorder, MoveObservers& observers);
 
-    /// Returns a flag per particle: others, or walls together with others, have supported it in the last step.
+    /// Returns one flag per particle. It is 1 if other spheres, or walls together with other spheres, supported the
+    /// particle in the last step.
     [[nodiscard]] std::vector<std::uint8_t> pressing() const { return contacts_.pressing(); }
 
-    /// Solves the islands among the particles of the generation. Their members are not moved otherwise in this step.
+    /// Solves the islands among the particles of the generation. Other code does not move the members in this step.
     void before_substep(const ParticleRange& generation, const TimeSpan& substep) override;
-    /// Stores the results of the members.
+    /// Stores the results of the members of islands.
     void after_substep(const ParticleRange& generation, const TimeSpan& substep,
                        std::vector<BlockRecord>& blocks) override;
     void end_step(SimulationStatistics& statistics) override { statistics.unsolved_steps += unsolved_; }
-    /// Wakes all spheres that sleep on others, because their supports may change.
+    /// Wakes all spheres that sleep on other spheres, because their supports may change.
     void wake_all(double time) override { contacts_.wake_all(time); }
     [[nodiscard]] const char* fault_of(std::size_t i) const override;
     [[nodiscard]] const char* fault(double time) const override;
@@ -60,7 +61,7 @@ private:
     PairPlans plans_;
     IslandBuilder islands_;
     verify::ImpactAudit books_;
-    std::uint64_t unsolved_ = 0;  // contact islands, in all steps, that were not solved to the tolerance
+    std::uint64_t unsolved_ = 0;  // number of contact islands, in all steps, that were not solved to the tolerance
 };
 
 }  // namespace ricochet

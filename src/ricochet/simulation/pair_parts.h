@@ -24,7 +24,8 @@ struct PairParts {
     const CoupledMotion& coupled;
     const PairContactSettings& settings;
     PairMaterials materials;                          ///< of the settings
-    std::optional<std::size_t> material_column = {};  ///< of kMaterialAttribute; none if all spheres have one material
+    std::optional<std::size_t> material_column = {};  ///< column of kMaterialAttribute; empty if all spheres have the
+                                                      ///< same material
 
     /// Returns false if all islands are solved impact by impact.
     [[nodiscard]] bool may_be_contact_island() const { return settings.method != PairMethod::events; }

@@ -13,8 +13,8 @@
 namespace ricochet {
 namespace {
 
-/// Most spheres in a row that are expected to be deflected by one at rest. Spheres behind these are found after the
-/// move, which is then repeated. Local, because only the cost depends on it.
+/// Largest number of spheres in a row that a sphere at rest is expected to deflect. Spheres behind them are found only
+/// after the move, which is then repeated. Local, because only the cost depends on it.
 constexpr int kDeflections = 2;
 
 }  // namespace
@@ -27,7 +27,7 @@ void PairPlans::find(const ParticleRange& range, const TimeSpan& step, const Pai
     freedom_.assign(range.size(), Freedom::unknown);
     boxes_.resize(range.size());
     declare();
-    // Spheres that may go anywhere without touching a wall must declare their paths.
+    // Tests the spheres that may leave their boxes, because those in free flight must declare their paths.
     std::vector<std::uint32_t> asked;
     for (std::uint32_t k = 0; k < boxes_.size(); ++k) {
         if (is_unbounded(k)) asked.push_back(k);
@@ -56,8 +56,9 @@ void PairPlans::collect_pairs() {
     });
 }
 
-/// Binds spheres that fly freely onto bound ones, because they will be deflected, and declares how far they may come.
-/// Bound spheres rest, press, or are expected to be deflected. Returns false if there are none.
+/// Marks free spheres that fly onto bound spheres as bound, because they will be deflected. Declares the boxes that
+/// they can reach. Bound spheres rest, press on others, or are expected to be deflected. Returns false if no free
+/// sphere was marked.
 bool PairPlans::expect_deflections() {
     if (!parts_.may_be_contact_island()) return false;
     std::vector<std::uint32_t> deflected;
@@ -77,7 +78,7 @@ bool PairPlans::expect_deflections() {
 }
 
 std::vector<NeighbourPair> PairPlans::stack_on(std::vector<std::uint32_t> base) const {
-    std::vector<NeighbourPair> resting_load;  // below, above
+    std::vector<NeighbourPair> resting_load;  // each pair: sphere below, sphere above
     for (const NeighbourPair& pair : pairs_) {
         if (lies_on(pair.second, pair.first)) resting_load.push_back(pair);
         if (lies_on(pair.first, pair.second)) resting_load.push_back({pair.second, pair.first});
@@ -102,7 +103,7 @@ std::vector<NeighbourPair> PairPlans::stack_on(std::vector<std::uint32_t> base) 
     return stack;
 }
 
-/// Returns true if a free sphere touches another one, except for a small gap, and its path leads into the other.
+/// Returns true if a free sphere touches another sphere, up to a small gap, and its path leads into this other sphere.
 bool PairPlans::lies_on(std::uint32_t above, std::uint32_t below) const {
     if (!is_free(above)) return false;
     const Particles& particles = parts_.store.particles();
@@ -114,7 +115,7 @@ bool PairPlans::lies_on(std::uint32_t above, std::uint32_t below) const {
     return has_sunk(touching, smaller, apart, free_path(above).path.end - center);
 }
 
-/// Makes the declarations that need no test by ask().
+/// Declares the paths and boxes that need no test by ask().
 void PairPlans::declare() {
     parallel_for_blocks(boxes_.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) {
@@ -128,7 +129,7 @@ void PairPlans::declare() {
 void PairPlans::ask(std::vector<std::uint32_t> particles) {
     std::erase_if(particles, [&](std::uint32_t k) {
         if (freedom_[k] != Freedom::unknown) return true;
-        freedom_[k] = Freedom::bound;  // until the test shows that it is free
+        freedom_[k] = Freedom::bound;  // until the test shows that the sphere is free
         return !parts_.may_be_contact_island() || boxes_[k].empty() || !moves(k);
     });
     parallel_for_blocks(particles.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -145,8 +146,8 @@ void PairPlans::ask(std::vector<std::uint32_t> particles) {
                  [&](std::uint32_t k) { return is_free(k); });
 }
 
-/// Returns true if walls alone hold a sphere, for as long as nothing comes near. It sleeps if single particles may
-/// sleep.
+/// Returns true if walls alone support a sphere at rest, and no moving collider comes near. Such a sphere sleeps if
+/// single particles may sleep.
 bool PairPlans::lies(std::size_t i) const {
     const Particles& particles = parts_.store.particles();
     if (particles.held[i] == 0 || !parts_.response.rules().forces.is_steady()) return false;
@@ -167,14 +168,15 @@ bool PairPlans::is_bounded() const {
            std::none_of(rules.materials.begin(), rules.materials.end(), gives_energy);
 }
 
-/// Returns true for a sphere that may go farther than its box.
+/// Returns true for a sphere that may leave its box.
 bool PairPlans::is_unbounded(std::uint32_t k) const {
     if (!is_bounded_) return true;
     return !boxes_[k].empty() && !parts_.response.rules().bodies.all_stay_out(boxes_[k]);
 }
 
-/// Returns the distance, in m, that a sphere can come in a duration, in s. Walls and forces must not give it more
-/// energy than a uniform force does. Its spin may turn into speed.
+/// Returns the largest distance, in m, that a sphere can travel in a duration, in s. Walls and forces must not give the
+/// sphere more energy than a uniform force. The energy of the spin is included, because friction can turn it into
+/// speed.
 double PairPlans::reach(std::size_t i, double duration) const {
     const Particles& particles = parts_.store.particles();
     const double turning = particles.radius[i] * length(particles.spin[i]);
@@ -185,7 +187,8 @@ double PairPlans::reach(std::size_t i, double duration) const {
     return kPairBoxSlack * duration * (speed + change);
 }
 
-/// Returns the box of a sphere that may touch walls; empty if it meets no others. Sleepers are in a grid of their own.
+/// Returns the box of a sphere that may touch walls. The box is empty if the sphere cannot meet other spheres. It is
+/// also empty for sleepers, which are in a separate grid.
 Box3 PairPlans::reachable_box(std::uint32_t k) const {
     const std::size_t i = first_ + k;
     const Particles& particles = parts_.store.particles();
@@ -213,8 +216,8 @@ bool PairPlans::lives_through(std::size_t i) const {
     return particles.birth_time[i] <= step_.begin && particles.birth_time[i] + particles.lifetime[i] >= step_.end;
 }
 
-/// Returns true if the look-ahead shows that a sphere flies freely. With contact islands results depend on it, so the
-/// sphere must also be free by its state.
+/// Returns true if the look-ahead shows that a sphere flies freely. With contact islands, results depend on this
+/// decision, so the state of the sphere must also show that it is free.
 bool PairPlans::is_known_free(std::uint32_t k) const {
     const std::size_t i = first_ + k;
     if (parts_.store.particles().radius[i] == 0.0 || is_asleep(k) || !parts_.schedule.is_in_free_flight(i))
@@ -222,7 +225,7 @@ bool PairPlans::is_known_free(std::uint32_t k) const {
     return !parts_.may_be_contact_island() || (traces_->presses[k] == 0 && lives_through(i));
 }
 
-/// Returns true if a sphere flies freely. Moves it as if it were alone.
+/// Returns true if a sphere flies freely. Tests this by a trial move of the sphere alone.
 bool PairPlans::flies_freely(std::uint32_t k, MoveScratch& scratch) const {
     const std::size_t i = first_ + k;
     const bool touches = parts_.store.particles().support[i][0] != kNoSupport || traces_->presses[k] != 0;
@@ -243,7 +246,7 @@ bool PairPlans::flies_freely(std::uint32_t k, MoveScratch& scratch) const {
     return goes_on && outcome.meetings() == 0 && moving.state.position == free_path(k).path.end;
 }
 
-/// Returns false if two spheres do not meet, unless others deflect them.
+/// Returns true if two spheres meet when no other sphere deflects them.
 bool PairPlans::do_meet(const NeighbourPair& pair) const {
     if (!overlap(place_of(pair.first), place_of(pair.second))) return false;
     if (!is_free(pair.first) || !is_free(pair.second)) return true;
@@ -253,8 +256,8 @@ bool PairPlans::do_meet(const NeighbourPair& pair) const {
     const double a = radius[first_ + pair.first];
     const double b = radius[first_ + pair.second];
     if (first_meeting({&first, 1}, {&second, 1}, a + b, 0.0)) return true;
-    // Two spheres that touch have no first meeting if forces drive them into each other. Only a contact island can keep
-    // them apart.
+    // first_meeting() finds nothing for two touching spheres that forces drive into each other. Only a contact island
+    // can keep such spheres apart.
     return parts_.may_be_contact_island() &&
            has_sunk(a + b, std::min(a, b), second.path.c[0] - first.path.c[0], second.path.end - first.path.end);
 }
@@ -267,7 +270,7 @@ bool PairPlans::comes_to(const IslandMember& member, std::uint32_t k) const {
     return first_meeting(member.trajectory, {&trajectory, 1}, distance, 0.0).has_value();
 }
 
-/// Adds pairs with sleepers. Sleepers are in a grid of their own, which stays as long as they sleep.
+/// Adds pairs with sleepers. Sleepers are in a separate grid, which is kept as long as the same spheres sleep.
 void PairPlans::add_pairs_with_sleepers() {
     const std::vector<std::uint8_t>& asleep = traces_->is_asleep;
     if (grid_version_ != traces_->version || in_grid_ != asleep) {

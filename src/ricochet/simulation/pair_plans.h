@@ -1,11 +1,12 @@
 /// \file
-/// Private to the simulation: the paths of spheres in a step as if each were alone, and the pairs that may meet.
+/// Private to the simulation: the paths that spheres take in a step if they meet no other spheres, and the pairs of
+/// spheres that may meet.
 ///
-/// Each sphere declares a box in which it stays if it meets no others. A sphere that flies freely, without touching a
-/// wall, declares its exact path. A bound sphere touches walls, or pressed on something in the last step. It declares
-/// how far it may come. The declarations decide which spheres contact islands plan together, and so they affect
-/// results. They depend only on the state at the start of the step, never on the look-ahead, which only saves the
-/// computation of a path.
+/// Each sphere declares bounds, in which it stays if it meets no other sphere. A free sphere flies without touching a
+/// wall, and declares its exact path. A bound sphere touches walls, or pressed on a wall or a sphere in the last step.
+/// It declares a box that it does not leave. The declarations decide which spheres contact islands plan together, so
+/// they affect results. They depend only on the state at the start of the step. The look-ahead only saves the
+/// computation of paths and does not change the declarations.
 #pragma once
 
 #include <cstdint>
@@ -20,42 +21,44 @@ namespace ricochet {
 
 /// State from earlier steps, for each particle of a range.
 struct PairTraces {
-    std::vector<std::uint8_t> is_asleep;  ///< in a sleeping island: others meet only its position
-    std::vector<std::uint8_t> presses;    ///< on others or walls, in a contact island of the last step
-    std::uint64_t version = 0;            ///< of the sleeping islands; changes with them
+    std::vector<std::uint8_t> is_asleep;  ///< 1 if the particle is in a sleeping island; other spheres then see only
+                                          ///< its position
+    std::vector<std::uint8_t> presses;    ///< 1 if it pressed on spheres or walls in a contact island of the last step
+    std::uint64_t version = 0;            ///< version of the sleeping islands; changes when they change
 };
 
 class PairPlans {
 public:
     explicit PairPlans(const PairParts& parts) : parts_(parts) {}
 
-    /// Finds the declarations of the particles of a range for a step, and the pairs that may meet. traces must outlive
-    /// the use of the plans. From here on, particles are given by their numbers in the range.
+    /// Computes the declarations of the particles of a range for a step, and finds the pairs that may meet. traces must
+    /// live as long as the plans are used. The other functions identify a particle by its number in the range.
     void find(const ParticleRange& range, const TimeSpan& step, const PairTraces& traces);
 
-    /// Returns the pairs whose boxes are near each other and of which at least one sphere moves. They include all pairs
-    /// that may meet.
+    /// Returns the pairs of spheres whose boxes are near each other, if at least one of the spheres moves. The result
+    /// includes all pairs that may meet.
     [[nodiscard]] const std::vector<NeighbourPair>& pairs() const { return pairs_; }
     /// Returns true if the spheres of a pair, given by its number, may meet.
     [[nodiscard]] bool may_meet(std::size_t pair) const { return met_[pair] != 0; }
-    /// Returns true if a sphere is bound, and may go farther than it declares.
+    /// Returns true if a sphere is bound and may leave its declared box.
     [[nodiscard]] bool may_roam(std::uint32_t k) const { return is_bound(k) && is_unbounded(k); }
     /// Returns true if a sphere takes part in the step, can be moved, and does not fly freely.
     [[nodiscard]] bool is_bound(std::uint32_t k) const { return !boxes_[k].empty() && moves(k) && !is_free(k); }
 
     /// Appends all spheres whose boxes are near a box.
     void find_near(const Box3& box, std::vector<std::uint32_t>& found) const;
-    /// Tests which of these spheres fly freely, unless that is known.
+    /// Tests which of these spheres fly freely. Skips spheres for which this is known.
     void ask(std::vector<std::uint32_t> particles);
-    /// Returns true if a sphere flies freely. It must have been tested by ask(), as the spheres of pairs() have.
+    /// Returns true if a sphere flies freely. ask() must have tested the sphere before. It has tested all spheres of
+    /// pairs().
     [[nodiscard]] bool is_free(std::uint32_t k) const { return freedom_[k] == Freedom::free; }
     [[nodiscard]] const Box3& box(std::uint32_t k) const { return boxes_[k]; }
-    /// Returns true if a member's path leads onto a sphere of another island that keeps its declaration. The sphere
-    /// must have been tested by ask().
+    /// Returns true if a member's path meets a sphere of another island that stays within its declared bounds. The
+    /// sphere must have been tested by ask().
     [[nodiscard]] bool comes_to(const IslandMember& member, std::uint32_t k) const;
 
-    /// Returns all spheres that fly freely and rest on the base, or on others that do, if the base keeps its position.
-    /// Each comes second in a pair with a sphere that it rests on.
+    /// Returns all free spheres that rest on spheres of `base`, directly or through other spheres, if the base keeps
+    /// its position. In each returned pair, the second sphere rests on the first sphere.
     [[nodiscard]] std::vector<NeighbourPair> stack_on(std::vector<std::uint32_t> base) const;
 
 private:
@@ -84,19 +87,19 @@ private:
     PairParts parts_;
     std::size_t first_ = 0;  // first particle of the range
     TimeSpan step_;
-    bool is_bounded_ = true;  // except near moving colliders
+    bool is_bounded_ = true;  // true if reach() is a bound, except near moving colliders
     const PairTraces* traces_ = nullptr;
     std::vector<Freedom> freedom_;
     std::vector<Box3> boxes_;
-    NeighbourPairs near_;                 // of boxes; spheres that have not been tested by ask() count as bound
-    std::vector<std::uint32_t> changed_;  // boxes that have changed since then
+    NeighbourPairs near_;                 // pairs of boxes; spheres that ask() has not tested count as bound
+    std::vector<std::uint32_t> changed_;  // boxes that have changed since the last search in near_
     std::vector<NeighbourPair> pairs_;
-    std::vector<std::uint8_t> met_;  // of the pairs
+    std::vector<std::uint8_t> met_;  // per pair: 1 if its spheres may meet
     NeighbourGrid sleeper_grid_;
     std::vector<Box3> sleeper_boxes_;
     Box3 sleepers_;                      // box around all sleepers
     std::vector<std::uint8_t> in_grid_;  // sleepers in the grid
-    std::uint64_t grid_version_ = 0;     // version of the sleeping islands in it
+    std::uint64_t grid_version_ = 0;     // version of the sleeping islands in the grid
 };
 
 }  // namespace ricochet

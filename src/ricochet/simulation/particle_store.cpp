@@ -70,7 +70,7 @@ std::span<const SideMemory> ParticleStore::sides_of(std::size_t i) const {
 MovingParticle ParticleStore::load(std::size_t i, double start, bool in_contact) {
     MovingParticle particle{force_input(i, start), particles_.spin[i], particles_.id[i], particles_.draws[i], {}};
     if (cores_.has(i)) {
-        // Forces see the whole sphere, the rest of the response its core.
+        // Forces act on the whole sphere. The rest of the response uses its core.
         particle.state.whole_radius = particles_.radius[i];
         particle.state.radius = cores_.radius(i);
         particle.spin = OverlapCores::spin_of_core(particle.spin, cores_.radius(i), particles_.radius[i]);
@@ -92,7 +92,7 @@ MovingParticle ParticleStore::load(std::size_t i, double start, bool in_contact)
     return particle;
 }
 
-/// Converts the spin of a core to that of the sphere. An unchanged spin keeps its bits.
+/// Converts the spin of a core to the spin of the sphere. An unchanged spin stays bitwise the same.
 Vec3 ParticleStore::spin_of(std::size_t i, const MovingParticle& moved) const {
     if (!cores_.has(i)) return moved.spin;
     const double core = cores_.radius(i);
@@ -110,7 +110,7 @@ void ParticleStore::store(std::size_t i, const MovingParticle& moved, const Move
     if (outcome.bounces > 0) particles_.contacts[i] = saturating_sum(particles_.contacts[i], outcome.bounces);
     if (outcome.unsimulated_time > 0.0) particles_.unsimulated_time[i] += outcome.unsimulated_time;
     if (in_contact) {
-        // An attached particle goes where its body goes.
+        // An attached particle moves with its body, so it is not held.
         const bool is_held = outcome.end == MoveEnd::held && may_be_supported && !moved.attachment;
         particles_.resting[i] = outcome.is_resting() ? 1 : 0;
         particles_.held[i] = is_held ? 1 : 0;
@@ -165,7 +165,7 @@ bool ParticleStore::is_sound(std::size_t i) const {
 std::optional<std::size_t> ParticleStore::index_of(std::uint64_t id) const {
     const std::vector<std::uint64_t>& ids = particles_.id;
     if (ids.empty() || id < ids.front()) return std::nullopt;
-    const std::size_t guess = id - ids.front();  // right if no particle has been removed
+    const std::size_t guess = id - ids.front();  // correct if no particle has been removed
     if (guess < ids.size() && ids[guess] == id) return guess;
     const auto at = std::lower_bound(ids.begin(), ids.end(), id);
     if (at == ids.end() || *at != id) return std::nullopt;

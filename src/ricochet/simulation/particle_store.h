@@ -1,6 +1,6 @@
 /// \file
-/// Private to the simulation: the particles with the state that the response keeps of each, and their exchange with the
-/// response.
+/// Private to the simulation: the particles, with the state that the response keeps for each of them, and their
+/// transfer to and from the response.
 #pragma once
 
 #include <cmath>
@@ -20,8 +20,8 @@ namespace ricochet {
 /// The particles of a simulation. Particles are appended at the end and keep their order.
 class ParticleStore {
 public:
-    /// may_sleep: supports last, so a held particle needs no further query. colliders: number of colliders whose sides
-    /// the response keeps; 0 if it keeps none. keeps_attachments: true if colliders move.
+    /// may_sleep: true if supports last, so that a held particle needs no further query. colliders: number of colliders
+    /// for which the response keeps sides; 0 without sides. keeps_attachments: true if colliders move.
     ParticleStore(std::vector<AttributeDescription> attributes, bool keeps_origin, bool may_sleep,
                   std::size_t colliders, bool keeps_attachments = false);
 
@@ -29,7 +29,7 @@ public:
     [[nodiscard]] Particles& particles() { return particles_; }
     [[nodiscard]] std::size_t size() const { return particles_.size(); }
 
-    /// Gives the particle its id and appends it. Its sides are not known yet.
+    /// Gives the particle its id and appends it. The particle's sides of surfaces are not known yet.
     void append(Particle&& particle);
     void reserve(std::size_t more);
     /// Keeps the particles whose flag is not 0.
@@ -38,7 +38,7 @@ public:
     /// Sets the contacts of a particle at the start of its next step.
     void set_contact(std::size_t i, const ContactState& contact);
 
-    /// Returns the cores of spheres in overlap, which collide as their cores.
+    /// Returns the cores of spheres in overlap. In collisions, a core replaces its sphere.
     [[nodiscard]] const OverlapCores& cores() const { return cores_; }
     [[nodiscard]] OverlapCores& cores() { return cores_; }
 
@@ -48,7 +48,7 @@ public:
     [[nodiscard]] std::span<const SideMemory> sides_from(std::size_t first) const {
         return std::span(sides_).subspan(first * colliders_);
     }
-    /// Returns true if nothing moves the particle, or if an earlier substep has removed it.
+    /// Returns true if the particle is frozen or pinned, or if an earlier substep has removed it.
     [[nodiscard]] bool is_fixed(std::size_t i) const {
         return particles_.frozen[i] != 0 || particles_.pinned[i] != 0 || particles_.absorbed[i] != 0;
     }
@@ -57,9 +57,9 @@ public:
     void set_may_sleep(bool may_sleep) { may_sleep_ = may_sleep; }
     /// Wakes a particle, because its supports may have changed.
     void wake(std::size_t i) { particles_.held[i] = 0; }
-    /// Returns the index of the particle with an id, or nothing if it is gone.
+    /// Returns the index of the particle with an id, or nothing if the particle is gone.
     [[nodiscard]] std::optional<std::size_t> index_of(std::uint64_t id) const;
-    /// Returns the state of a particle for forces at a time, in s.
+    /// Returns the input of forces on a particle at a time, in s.
     [[nodiscard]] ForceInput force_input(std::size_t i, double time) const {
         ForceInput input{particles_.position[i], particles_.velocity[i], particles_.mass[i], particles_.radius[i], time,
                          particles_.id[i]};
@@ -67,34 +67,35 @@ public:
         return input;
     }
 
-    /// Returns particle i for a move by the response from `start`, in s. in_contact: the arrays may hold a contact of
-    /// it. Otherwise they are not read, because each read costs a cache miss for particles in arbitrary order.
+    /// Returns particle i for a move by the response from `start`, in s. in_contact: true if the arrays may contain a
+    /// contact of the particle. Otherwise the contact arrays are not read, because each read costs a cache miss for
+    /// particles in arbitrary order.
     [[nodiscard]] MovingParticle load(std::size_t i, double start, bool in_contact);
-    /// Stores a particle after a move. in_contact: the arrays may hold a contact of it, or it has one now.
-    /// may_be_supported: false for a particle on which others act.
+    /// Stores a particle after a move. in_contact: true if the arrays may contain a contact of the particle, or if the
+    /// particle has a contact now. may_be_supported: false for a particle on which other particles act.
     void store(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, bool in_contact,
                bool may_be_supported);
 
     /// Prefetches the data that load() and store() use.
     void prefetch(std::size_t i) const;
 
-    /// Returns the time, in s, of the stored position: `now`, except for stalled particles.
+    /// Returns the time, in s, of the stored position. This time is `now`, except for stalled particles.
     [[nodiscard]] double stored_time(std::size_t i, double now) const {
         return keeps_attachments_ && !std::isnan(attachments_[i].stored_time) ? attachments_[i].stored_time : now;
     }
 
     /// Returns the id of the next particle that is added.
     [[nodiscard]] std::uint64_t next_id() const { return next_id_; }
-    /// Sets this id, if particles with the ids in between live on other ranks.
+    /// Sets the id of the next particle, because particles with the ids in between live on other ranks.
     void set_next_id(std::uint64_t id) { next_id_ = id; }
-    /// Returns a store like this one, without particles.
+    /// Returns a store with the same settings and without particles.
     [[nodiscard]] ParticleStore empty_copy() const;
 
-    /// Saves or restores the state between steps; a: an archive of core/binary_archive.h.
+    /// Saves or restores the state between steps. a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a);
 
-    /// Returns false for a state of particle i that no run leaves behind.
+    /// Returns false if no run can produce the present state of particle i.
     [[nodiscard]] bool is_sound(std::size_t i) const;
 
     /// Returns the spin, in rad/s, of particle i as it is stored after a move by the response.
@@ -103,19 +104,19 @@ public:
 private:
     Particles particles_;
     OverlapCores cores_;
-    /// State of a particle that is kept if colliders move.
+    /// State that is stored for each particle if colliders move.
     struct AttachmentMemory {
-        double stored_time = std::numeric_limits<double>::quiet_NaN();  ///< s, of a stalled particle; else NaN
+        double stored_time = std::numeric_limits<double>::quiet_NaN();  ///< s, for a stalled particle; else NaN
         std::uint8_t is_attached = 0;
-        MovingParticle::Attachment attachment{};  ///< if is_attached
+        MovingParticle::Attachment attachment{};  ///< valid if is_attached
     };
-    std::vector<AttachmentMemory> attachments_;  // one per particle, if they are kept
+    std::vector<AttachmentMemory> attachments_;  // one per particle if keeps_attachments_, else empty
     bool keeps_attachments_ = false;
-    std::vector<SideMemory> sides_;  // one per collider for every particle, for responses that keep sides
+    std::vector<SideMemory> sides_;  // for each particle one per collider, if the response keeps sides
     std::size_t colliders_;
     std::uint64_t next_id_ = 0;
     bool may_sleep_;
-    std::optional<std::size_t> temperature_column_;  // among the attributes, if there is one
+    std::optional<std::size_t> temperature_column_;  // of kTemperatureAttribute; empty without temperatures
 };
 
 /// Returns true if the life of particle i is over at a time, in s, or if a surface has absorbed or shattered it.

@@ -13,16 +13,17 @@ namespace {
 /// Members per unit of parallel work.
 constexpr std::size_t kPlannedContactsBlock = 64;
 
-/// Part of the slip of a solid sphere that friction must remove for rolling: 1 / (1 + 5/2). A mathematical constant.
+/// Fraction of the slip of a solid sphere that friction must remove for rolling: 1 / (1 + 5/2). A mathematical
+/// constant.
 constexpr double kRollingShare = 2.0 / 7.0;
 
-/// Displacement by a force that grows evenly from 0, over its final acceleration and the square of the step. A
-/// mathematical constant.
+/// Displacement by a force that grows linearly from 0, divided by its final acceleration and by the square of the step.
+/// A mathematical constant.
 constexpr double kLedBy = 1.0 / 6.0;
 
 }  // namespace
 
-/// Motion of a member along its line.
+/// Planned motion of a member along a straight line.
 struct PlannedContacts::Flown {
     Vec3 before;    ///< m/s, at the start of the step
     Vec3 velocity;  ///< m/s, along the line
@@ -85,14 +86,14 @@ std::vector<Vec3> PlannedContacts::bends(const ParticleSystem& system, const Sys
     return result;
 }
 
-/// Returns the support constraints of a contact. Along the normals the member gets to the surface and, if it rebounds,
-/// back from there. From the impact on, friction stops a point and lets a sphere roll, as far as it can. It removes a
-/// share of the slip that the member would have, so it is proportional to the slip that is left.
+/// Returns the support constraints of a contact. Along the normals, the member moves to the surface and, if it
+/// rebounds, away from the surface. From the impact on, friction stops a point or makes a sphere roll, within the
+/// friction limit. Friction removes a share of the slip without friction, so it is proportional to the remaining slip.
 SupportConstraints PlannedContacts::held(const Flown& flown, const Contact& contact) const {
     SupportConstraints held;
     const double part = contact.time / flown.duration;
     const Vec3& v = flown.velocity;
-    double pressed = 0.0;  // m/s, by all normals
+    double pressed = 0.0;  // m/s, sum over all normals
     double friction = 0.0;
     for (const ContactSurface& surface : contact.all()) {
         if (held.count == held.directions.size()) break;

@@ -12,26 +12,28 @@
 
 namespace ricochet {
 
-/// Predicts the surfaces that will stop members, by searching along the paths of a planned step. The plan of an
-/// implicit method uses the predictions, because the method must know which neighbours a surface stops. Otherwise
-/// springs between stopped and flying members would be stretched by the error at a long step. Each member still meets
-/// its surfaces alone and exactly. The prediction decides only where other members expect it.
+/// Predicts the surfaces that will stop members, by a search along the paths of a planned step. Plans of an implicit
+/// method use the predictions, because the method must know which members a surface stops. Without predictions, a long
+/// step would stretch springs between stopped and flying members by a large error. Each member still collides with its
+/// surfaces alone and exactly. The prediction decides only where the other members expect a member to be.
 class PlannedContacts {
 public:
-    /// All must outlive it. resting_speed is in m/s. Moving surfaces are not predicted.
+    /// The arguments must outlive the object. resting_speed: m/s. Moving surfaces are not predicted.
     PlannedContacts(const CollisionWorld& world, std::span<const Material> materials, double resting_speed)
         : world_(world), materials_(materials), resting_speed_(resting_speed) {}
 
-    /// Returns the support constraints of each member on a straight line. velocities: along the lines, in m/s.
-    /// duration: in s. least_compliance: lower bound of SupportConstraints::yield, as a part of the largest
-    /// velocity. Newton's method needs a slope, so friction may leave so much slip to a member that it stops.
+    /// Returns the support constraints of each member. Members are assumed to move along straight lines. velocities:
+    /// velocities along the lines, in m/s. duration: s. least_compliance: lower bound of SupportConstraints::yield,
+    /// divided by the largest velocity. Newton's method needs a finite slope, so a member that friction stops may keep
+    /// slip up to this bound.
     [[nodiscard]] std::vector<SupportConstraints> find(const ParticleSystem& system, std::span<const Vec3> velocities,
                                                        std::span<const Vec3> spins, double duration,
                                                        double least_compliance) const;
 
-    /// Returns the deviation of each constrained member, in m, from its straight motion in a step, because surfaces are
-    /// curved. It has two parts: the distance to the surface at the end, and the motion along the surface by a contact
-    /// force whose direction turns with it.
+    /// Returns the deviation, in m, of each constrained member from its straight motion in a step. The cause is the
+    /// curvature of surfaces. The deviation has two parts. The first part is the distance to the surface at the end of
+    /// the step. The second part is the motion along the surface by a contact force whose direction turns with the
+    /// surface.
     [[nodiscard]] std::vector<Vec3> bends(const ParticleSystem& system, const SystemStep& step,
                                           std::span<const SupportConstraints> held) const;
 

@@ -12,13 +12,14 @@
 namespace ricochet {
 namespace {
 
-/// Number of arrivals in memory at a time. An arrival takes as much memory as a particle.
+/// Largest number of arrivals in memory at the same time. An arrival needs as much memory as a particle.
 constexpr std::size_t kArrivals = 16384;
 
-/// Number of particles that a thread examines at a time, in some hundred microseconds.
+/// Particles per unit of parallel work, which takes some hundred microseconds.
 constexpr std::size_t kArrivalBlock = 64;
 
-/// Contacts at a birth continue only if particles slide and rest exactly.
+/// Returns true if contacts are searched at a birth. They can continue only if the response lets particles slide and
+/// rest exactly.
 bool finds_contacts(const SimulationOptions& options, const Response& response) {
     return options.response == ResponseKind::exact && !options.flow && !response.keeps_sides();
 }
@@ -33,14 +34,14 @@ bool starts_on_surface(const CollisionScene& scene, const Particle& particle) {
     return find_first_contact(geometry, {path, 0.0}, scratch).near.starts_in_overlap();
 }
 
-/// Returns the contact with the surfaces of one frame, in which the particle is at a position. Nothing if it touches
-/// none.
+/// Returns the contact of a particle with the surfaces of one frame. position: of the particle in this frame. Returns
+/// nothing if the particle touches no surface.
 std::optional<ContactState> contact_in(const CollisionScene& scene, const CollisionWorld& of_frame,
                                        const Particle& particle, const Vec3& position) {
     ContactState contact;
     const double reach = kTouchingOffsets * contact_offset(position);
     for (const SurfaceId surface : surfaces_touched(of_frame, position, particle.radius, reach)) {
-        // A random reflection answers each touch.
+        // A random reflection resolves each touch, so no contact is kept.
         if (scene.materials()[scene.world().material_of(surface)].is_random()) return ContactState{};
         contact.surfaces[0] = surface;
         contact.count = 1;
@@ -65,11 +66,11 @@ ContactState contact_of(const CollisionScene& scene, const Particle& particle) {
 
 }  // namespace
 
-/// Findings about a new particle. They depend only on surfaces, not on other new particles.
+/// Test results of a new particle. They depend only on surfaces, and not on other new particles.
 struct Population::Arrival {
-    std::optional<Overlap> overlap;  ///< with a surface
-    bool starts_inside = false;      ///< in overlap, on a surface, or moved off one
-    ContactState contact;            ///< with surfaces that touch the particle
+    std::optional<Overlap> overlap;  ///< overlap with a surface
+    bool starts_inside = false;      ///< true if in overlap, on a surface, or moved off a surface
+    ContactState contact;            ///< contact with the surfaces that touch the particle
 };
 
 Population::Population(ParticleStore store, const AccelerationSwitches& acceleration, double particle_bytes,
@@ -106,7 +107,7 @@ void Population::add(std::span<Particle* const> added, const std::function<void(
     }
 }
 
-/// Examines particles on all threads, and moves them off surfaces of moving colliders on which they lie.
+/// Tests particles on all threads. Moves particles off the surfaces of moving colliders on which they lie.
 std::vector<Population::Arrival> Population::examine(std::span<Particle* const> added) const {
     std::vector<Arrival> arrivals(added.size());
     parallel_for_blocks(arrivals.size(), kArrivalBlock, [&](std::size_t /*block*/, std::size_t begin, std::size_t end) {
@@ -159,7 +160,7 @@ void Population::compact(const std::vector<std::uint8_t>& keep) {
     bind();
 }
 
-// The schedule of the particles that are here is kept.
+// Keeps the query schedule of the particles that are already in the store.
 void Population::merge(std::vector<std::vector<std::byte>> parts) {
     const std::vector<std::uint64_t> here = particles().id;
     parts.insert(parts.begin(), archived_bytes(store_));
@@ -185,8 +186,8 @@ void Population::bind() const {
     parts_.modules.each([](Module& module) { module.bind(); });
 }
 
-// Only `exact` is reordered. The other responses sum penetration depths block by block, and other blocks would change
-// the rounding of that sum.
+// Reorders the active set only for `exact`. The other responses sum penetration depths block by block, and different
+// blocks would change the rounding of this sum.
 ActiveSet Population::advance(const ParticleRange& range, const TimeSpan& part, std::vector<BlockRecord>& blocks) {
     ActiveSet active = flights_.advance(range, part, blocks);
     if (parts_.options.response != ResponseKind::exact) return active;

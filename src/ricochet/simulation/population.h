@@ -16,14 +16,14 @@
 
 namespace ricochet {
 
-/// Parts of a run that its particles need. All must outlive them.
+/// Parts of a run that the population needs. All parts must outlive the population.
 struct PopulationParts {
     const SimulationOptions& options;
     CollisionScene& scene;
     const Response& response;
     const StepClock& clock;
     RunRecorder& recorder;
-    ModuleList& modules;  ///< told of each change
+    ModuleList& modules;  ///< notified of each change
 };
 
 /// The particles of a run, with their query schedule and their free flights.
@@ -43,8 +43,8 @@ public:
 
     /// Reserves memory for `more` particles.
     void reserve(std::size_t more);
-    /// Adds particles with their ids, in ascending order. All threads examine them. after: called with the number of
-    /// each particle once it has been added.
+    /// Adds particles with their ids, in ascending order of ids. All threads test the particles. after: called after
+    /// each particle has been added, with the particle's index in `added`.
     void add(std::span<Particle* const> added, const std::function<void(std::size_t)>& after = {});
     /// Keeps the particles whose flag is not 0.
     void compact(const std::vector<std::uint8_t>& keep);
@@ -55,15 +55,15 @@ public:
 
     // Motion.
 
-    /// Advances the particles of the range that are in free flight. Returns the others that need a query, divided and
-    /// sorted for speed.
+    /// Advances the particles of the range that are in free flight. Returns the particles that need a query, divided
+    /// into blocks and sorted for speed.
     [[nodiscard]] ActiveSet advance(const ParticleRange& range, const TimeSpan& part, std::vector<BlockRecord>& blocks);
-    /// Returns true if particles in free flight may defer their steps: nothing reads their positions.
+    /// Returns true if particles in free flight may defer their steps, because no module reads their positions.
     [[nodiscard]] bool may_defer() const;
     [[nodiscard]] FreeFlights& flights() { return flights_; }
     /// Wakes a particle, from the next step on.
     void wake(std::size_t i);
-    /// Forgets the results of earlier queries. Only speed depends on them.
+    /// Discards the results of earlier queries. They affect only the speed of a run.
     void forget_queries();
     /// Decides whether held particles may sleep. Must be called when the forces have changed.
     void allow_sleep();

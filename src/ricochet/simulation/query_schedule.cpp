@@ -20,10 +20,11 @@ void QuerySchedule::set_flying(std::size_t i, const FreeFlightForecast& forecast
     set(i, next, candidates_for(next, forecast));
 }
 
-// Returns the candidates if they are complete for the whole step of the query, which the last step may exceed by
-// rounding.
+// Returns the candidates of a forecast if they are complete for the whole step of the query. A last step that is not
+// exactly whole gets no candidates, because rounding can make it longer.
 ContactCandidates QuerySchedule::candidates_for(std::uint32_t next, const FreeFlightForecast& forecast) const {
-    const std::uint64_t end = std::max<std::uint64_t>(next, step_ + 2);  // of that step, as a number of steps
+    const std::uint64_t end = std::max<std::uint64_t>(next, step_ + 2);  // end of the step of the query, as a number of
+                                                                         // steps
     if (end >= clock_.steps() && !clock_.last_is_whole()) return {};
     return forecast.candidates_until >= clock_.time_at(end) ? forecast.candidates : ContactCandidates{};
 }

@@ -23,8 +23,8 @@ struct TimeSpan {
     double end = 0.0;
 };
 
-/// Clock with equal steps from 0 to the end of the run. The last step is cut there, or longer by less than
-/// kStepRounding.
+/// Clock with equal steps from 0 to the end of the run. The last step ends there. It can be shorter than the other
+/// steps, or longer by less than the fraction kStepRounding.
 class StepClock {
 public:
     /// time_step > 0, duration >= 0, both finite, in s.
@@ -36,15 +36,16 @@ public:
 
     /// Returns the number of steps of the whole run.
     [[nodiscard]] std::uint64_t steps() const { return steps_; }
-    /// Returns the time, in s, at which a step begins. For steps() and beyond it is the end of the run.
+    /// Returns the time, in s, at which a step begins. For steps() and larger numbers, the result is the end of the
+    /// run.
     [[nodiscard]] double time_at(std::uint64_t step) const {
         return step >= steps_ ? duration_ : static_cast<double>(step) * time_step_;
     }
     [[nodiscard]] TimeSpan span_of(std::uint64_t step) const { return {time_at(step), time_at(step + 1)}; }
-    /// Returns true if the last step is exactly as long as the others.
+    /// Returns true if the last step is exactly as long as the other steps.
     [[nodiscard]] bool last_is_whole() const { return duration_ == static_cast<double>(steps_) * time_step_; }
-    /// Returns the last step, up to `most`, that begins before `until`, or 0. A step of time_step seconds must be able
-    /// to begin there, so a shorter last step does not count.
+    /// Returns the last step that begins before `until`, in s. The result is at most `most`, and 0 if there is no such
+    /// step. A step of time_step seconds must be able to begin there, so a shorter last step does not count.
     [[nodiscard]] std::uint64_t last_step_before(double until, std::uint64_t most) const {
         most = std::min(most, last_is_whole() ? steps_ : steps_ - 1);
         auto step = static_cast<std::uint64_t>(std::min(until / time_step_, static_cast<double>(most)));
@@ -60,28 +61,28 @@ private:
 
 /// State of a particle in the present step.
 enum class QueryState : std::uint8_t {
-    unknown,      ///< nothing is known: it is queried, and may be in contact
-    flying,       ///< it is queried; it was in contact with nothing at the end of its last step
-    free_flight,  ///< it certainly hits nothing: no query
-    left_alone,   ///< nothing moves it (pinned, frozen, asleep) or it is about to be removed: no query
+    unknown,      ///< the particle is queried, and may be in contact
+    flying,       ///< the particle is queried; it had no contact at the end of its last step
+    free_flight,  ///< the particle certainly hits nothing, so it is not queried
+    left_alone,   ///< the particle is pinned, frozen, asleep or about to be removed, so it is not queried
 };
 
-/// Forecast by the look-ahead of a particle's last query, if the particle flies on.
+/// Forecast by the look-ahead in a particle's last query. It applies if the particle is in flight.
 struct FreeFlightForecast {
-    double free_until = 0.0;            ///< s: it certainly hits nothing before; not known if not later than now
-    double candidates_until = 0.0;      ///< s: no triangles but the candidates come near its path before
-    ContactCandidates candidates = {};  ///< only when candidates_until is later than now
+    double free_until = 0.0;            ///< s, the particle certainly hits nothing before; in the past: unknown
+    double candidates_until = 0.0;      ///< s, only the candidates come near the particle's path before
+    ContactCandidates candidates = {};  ///< valid only if candidates_until is in the future
 };
 
-/// State of every particle, in four bytes each, and the candidates of its next query. A scan finds the active set of a
-/// step in a fraction of the time that its moves take. This serves only speed: with every particle unknown a run has
-/// the same bits.
+/// State of every particle, in four bytes per particle, and the candidates of its next query. A scan over the states
+/// finds the active set of a step in a fraction of the time of the moves. The schedule affects only the speed of a run.
+/// If every particle were unknown, results would be bitwise the same.
 class QuerySchedule {
 public:
-    /// clock must outlive it.
+    /// clock must outlive the object.
     explicit QuerySchedule(const StepClock& clock) : clock_(clock) {}
 
-    /// Begins a step, to which the states below then belong.
+    /// Begins a step. The functions below then return the states of particles in this step.
     void begin_step(std::uint64_t step);
 
     [[nodiscard]] QueryState state(std::size_t i) const {
@@ -91,20 +92,21 @@ public:
     }
     [[nodiscard]] bool is_left_alone(std::size_t i) const { return next_[i] == kLeftAlone; }
     [[nodiscard]] bool is_in_free_flight(std::size_t i) const { return is_free(next_[i], now_); }
-    /// Returns true if the particles' arrays hold no contact of a particle, so that they need not be read.
+    /// Returns true if the particles' arrays contain no contact of particle i, so that the contact arrays need not be
+    /// read.
     [[nodiscard]] bool is_without_contact(std::size_t i) const {
         return next_[i] != kLeftAlone && next_[i] != kUnknown;
     }
     /// Returns the triangles that come near the path in the next query, if they are known.
     [[nodiscard]] const ContactCandidates& candidates(std::size_t i) const { return candidates_[i]; }
 
-    /// Returns how many particles of [begin, end) need a query.
+    /// Returns the number of particles of [begin, end) that need a query.
     [[nodiscard]] std::size_t count_active(std::size_t begin, std::size_t end) const {
         std::size_t count = 0;
         for (std::size_t i = begin; i < end; ++i) count += is_active(next_[i], now_) ? 1 : 0;
         return count;
     }
-    /// Returns how many particles of [begin, end) are left alone.
+    /// Returns the number of particles of [begin, end) that are left alone.
     [[nodiscard]] std::size_t count_left_alone(std::size_t begin, std::size_t end) const {
         std::size_t count = 0;
         for (std::size_t i = begin; i < end; ++i) count += is_left_alone(i) ? 1 : 0;
@@ -117,7 +119,7 @@ public:
         for_each_if(
             begin, end, [next, now = now_](std::size_t i) { return is_active(next[i], now); }, visit);
     }
-    /// Calls visit(i) for the particles that are not in free flight, in the same order.
+    /// Calls visit(i) for the particles of [begin, end) that are not in free flight, in ascending order.
     template <class Visit>
     void visit_all_but_free_flights(std::size_t begin, std::size_t end, const Visit& visit) const {
         const std::uint32_t* next = next_.data();
@@ -125,7 +127,8 @@ public:
             begin, end, [next, now = now_](std::size_t i) { return !is_free(next[i], now); }, visit);
     }
 
-    /// Sets the state of a particle that has just been moved. Several threads may call these for different particles.
+    /// The next three functions set the state of a particle after its move. Several threads may call them for different
+    /// particles.
     void leave_alone(std::size_t i) { set(i, kLeftAlone, {}); }
     void forget(std::size_t i) { set(i, kUnknown, {}); }
     void set_flying(std::size_t i, const FreeFlightForecast& forecast);
@@ -135,11 +138,11 @@ public:
     void reserve(std::size_t more);
     /// Keeps the particles whose flag is not 0.
     void compact(const std::vector<std::uint8_t>& keep);
-    /// Index in rearrange() of a particle that was not here.
+    /// Index that marks a new particle in rearrange().
     static constexpr std::size_t kNew = std::numeric_limits<std::size_t>::max();
-    /// Rearranges the particles: particle i was from[i] before, or is a new one of unknown state.
+    /// Rearranges the particles. Particle i had the index from[i] before, or is a new particle of unknown state.
     void rearrange(const std::vector<std::size_t>& from);
-    /// Begins with `count` particles of unknown state.
+    /// Restarts with `count` particles of unknown state.
     void reset(std::size_t count);
 
     /// Prefetches the data of a particle.
@@ -149,9 +152,10 @@ public:
     }
 
 private:
-    // For every particle, one more than the number of the step of its next query, or one of two marks. The marks are at
-    // the ends of the range. So a particle is active if its number is at most that of the present step. It is not in
-    // free flight if this holds after adding 1 to both numbers, which turns the upper mark into 0.
+    // Each particle has a number: one more than the step of its next query, or one of two marks. The marks are the
+    // smallest and the largest number. Therefore a particle is active if its number is at most the number of the
+    // present step. A particle is in free flight if its number is still larger after 1 is added to both numbers. The
+    // addition turns the largest number into 0, so that one comparison also excludes this mark.
     static constexpr std::uint32_t kUnknown = 0;
     static constexpr std::uint32_t kLeftAlone = std::numeric_limits<std::uint32_t>::max();
 
@@ -165,7 +169,7 @@ private:
 
     const StepClock& clock_;
     std::uint64_t step_ = 0;
-    std::uint32_t now_ = 1;  ///< one more than step_, within its range; no run is so long that flights are free beyond
+    std::uint32_t now_ = 1;  ///< one more than step_, limited to the range of numbers; real runs do not reach the limit
     std::vector<std::uint32_t> next_;
     std::vector<ContactCandidates> candidates_;
 };

@@ -1,9 +1,9 @@
 /// \file
 /// Private to the simulation: the cost of the particles on each rank, and transfers of particles between ranks.
 ///
-/// Work is counted, not measured, so that a repeated run with as many ranks has the same particles on each of them. No
-/// bit depends on the rank of a particle: births go by ids, children to the ranks of their parents, and nothing else
-/// uses it.
+/// Work is counted and not measured, so that a repeated run with the same number of ranks has the same particles on
+/// each rank. Results do not depend on the rank of a particle. The id of a birth determines its rank, a child lives on
+/// the rank of its parent, and no other code uses the rank.
 #pragma once
 
 #include <cstddef>
@@ -19,37 +19,37 @@ namespace ricochet {
 /// Numbers of particles in a substep, by the work that they cause.
 struct WorkCounts {
     std::uint64_t queried = 0;   ///< particles that the response has moved
-    std::uint64_t flying = 0;    ///< in free flight
-    std::uint64_t idle = 0;      ///< asleep, frozen, pinned: they are skipped
+    std::uint64_t flying = 0;    ///< particles in free flight
+    std::uint64_t idle = 0;      ///< asleep, frozen and pinned particles, which are skipped
     std::uint64_t contacts = 0;  ///< impacts of the moved particles
 
     /// Returns the work in tens of nanoseconds on one core, approximately.
     [[nodiscard]] std::uint64_t work() const;
 };
 
-/// Parts of its work, 0 to 1, that a rank gives to each rank.
+/// Fractions of a rank's work, 0 to 1, that the rank transfers to each rank.
 using RankTransfers = std::vector<double>;
 
-/// Checks every few steps whether a rank is behind.
+/// Checks every few steps whether a rank has much more work than the others.
 class RankBalancer {
 public:
-    /// Steps from one check to the next. In so many steps a rank whose particles have children may fall behind.
+    /// Number of steps between two checks. In more steps, a rank whose particles have children could fall far behind.
     static constexpr std::uint64_t kSteps = 4;
-    /// Checks after which the earlier work of ranks is forgotten.
+    /// Number of checks after which the sums of work start again from 0.
     static constexpr std::uint64_t kLooks = 4;
-    /// Work of the busiest rank over the mean from which on particles change ranks. Local, because only the cost
-    /// depends on it.
+    /// Ratio of the busiest rank's work to the mean work above which particles change ranks. Local, because only the
+    /// cost depends on it.
     static constexpr double kMostBusy = 1.1;
-    /// Work above the mean that is not worth the communication: a tenth of a millisecond. Local, because only the cost
-    /// depends on it.
+    /// Smallest work above the mean that is worth the communication: a tenth of a millisecond. Local, because only the
+    /// cost depends on it.
     static constexpr double kLeastGift = 1e4;
-    /// Work to make room among the particles of a rank, for each of them. Less work above the mean can wait for more
-    /// checks. Local, because only the cost depends on it.
+    /// Work per particle of a rank that it costs to insert transferred particles. A smaller excess of work waits for
+    /// more checks. Local, because only the cost depends on it.
     static constexpr double kMoveWork = 30.0;
 
     void note(const WorkCounts& counts) { work_ += counts.work(); }
-    /// Must be called by all ranks at the start of each step. here: number of particles of this rank. Returns nothing,
-    /// on all ranks alike, if all particles keep their ranks.
+    /// Checks the balance if a check is due. Must be called by all ranks at the start of each step. here: number of
+    /// particles of this rank. If all particles keep their ranks, returns nothing on every rank.
     [[nodiscard]] std::optional<RankTransfers> look(Ranks& ranks, std::size_t here);
     /// Counts particles that have left this rank.
     void add_moved(std::uint64_t count) { moved_here_ += count; }
@@ -58,22 +58,22 @@ public:
 private:
     void keep_account(const std::vector<std::uint64_t>& work);
 
-    std::uint64_t steps_ = 0;         // since the last check
-    std::uint64_t work_ = 0;          // of this rank since then
-    std::uint64_t moved_here_ = 0;    // particles given since then
-    std::uint64_t looks_ = 0;         // checks in sum_
-    std::vector<std::uint64_t> sum_;  // work of all ranks
-    double busiest_ = 0.0;            // sum over all checks, of the busiest rank each time
+    std::uint64_t steps_ = 0;         // number of steps since the last check
+    std::uint64_t work_ = 0;          // work of this rank since the last check
+    std::uint64_t moved_here_ = 0;    // particles that have left this rank since the last check
+    std::uint64_t looks_ = 0;         // number of checks in sum_
+    std::vector<std::uint64_t> sum_;  // work of each rank
+    double busiest_ = 0.0;            // work of the busiest rank, summed over all checks
     double mean_ = 0.0;
     RankBalance balance_;
 };
 
-/// Returns the transfers of a rank that give all ranks the mean work. Ranks with too much give in their order to ranks
-/// with too little in theirs.
+/// Returns the transfers of a rank. The transfers of all ranks together give each rank the mean work. Ranks with too
+/// much work give to ranks with too little work, both in ascending order.
 [[nodiscard]] RankTransfers gifts_of(std::size_t rank, const std::vector<std::uint64_t>& work);
 
-/// Selects the particles that leave: for each the rank that it goes to, or kStays. The same share of the particles of
-/// each cost leaves, evenly over the list. Particles that cost nothing stay.
+/// Selects for each particle the rank to which it moves, or kStays. The same fraction of the particles of each cost
+/// leaves, spread evenly over the list. Idle particles stay.
 class TransferChoice {
 public:
     static constexpr std::uint32_t kStays = ~std::uint32_t{0};

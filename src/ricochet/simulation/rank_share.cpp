@@ -23,7 +23,7 @@ void RankShare::keep_together(std::vector<std::uint64_t> ids) {
     together_ = std::move(ids);
 }
 
-// Positive numbers have the order of their bits.
+// Compares bit patterns, because those of positive numbers have the same order as the numbers.
 double RankShare::shortest(double duration) const {
     std::array<std::uint64_t, 1> bits{std::bit_cast<std::uint64_t>(duration)};
     ranks_->least(bits);
@@ -65,7 +65,7 @@ void RankShare::note(const std::vector<BlockRecord>& blocks, const std::vector<s
     }
 }
 
-// The terms of a particle are in the order of events, and all of them are on one rank.
+// A stable sort keeps the terms of a particle in the order of events, because all of them come from one rank.
 void RankShare::add_up(const ColliderList& colliders) {
     std::vector<LostTime> times = gather_list(*ranks_, new_lost_times_);
     std::vector<Load> loads = gather_list(*ranks_, new_loads_);

@@ -1,12 +1,13 @@
 /// \file
-/// Private to the simulation: the part of a run that one of several processes has.
+/// Private to the simulation: the part of a run that one process has if several processes share the run.
 ///
-/// Each rank has the whole scene and moves its own particles. The schedules of emitters run on all ranks alike. A birth
-/// is made, and lives, on the rank that its position in the schedules gives (births.h). The id of a particle of the
-/// setup gives its rank. A child lives on the rank of its parent. Particles joined by springs live on the first rank,
-/// which plans their motion. The other ranks divide a step into the same substeps. Sums that do not depend on the order
-/// of their terms are kept by each rank for itself. For other sums (unsimulated time, loads on moving colliders) each
-/// rank keeps its terms. The first rank adds them in the order in which one process would.
+/// Each rank has the whole scene and moves its own particles. All ranks run the same schedules of emitters. The
+/// position of a birth in the schedules determines the rank that makes the particle and on which it lives (births.h).
+/// The id of a particle of the setup determines its rank. A child lives on the rank of its parent. Particles joined by
+/// springs live on the first rank, which plans their motion. The other ranks divide a step into the same substeps. Each
+/// rank keeps its own sums if they do not depend on the order of their terms. For other sums (unsimulated time, loads
+/// on moving colliders) each rank stores its terms. The first rank adds these terms in the order in which a single
+/// process would add them.
 #pragma once
 
 #include <algorithm>
@@ -39,9 +40,10 @@ public:
           size_(ranks_ ? ranks_->size() : 1) {}
 
     [[nodiscard]] bool is_alone() const { return ranks_ == nullptr; }
-    /// Returns true for the rank that enters the common counts of all ranks.
+    /// Returns true for the first rank, which records the counts that are common to all ranks.
     [[nodiscard]] bool is_first() const { return rank_ == 0; }
-    /// Throws InputError if ranks share the run, because users change a run between steps only in one process.
+    /// Throws InputError if several ranks share the run, because users can change a run between steps only in a single
+    /// process.
     void require_alone(const char* call) const;
     /// Must not be called if is_alone().
     [[nodiscard]] Ranks& ranks() const { return *ranks_; }
@@ -51,23 +53,25 @@ public:
     [[nodiscard]] bool stays(std::uint64_t id) const {
         return !together_.empty() && std::binary_search(together_.begin(), together_.end(), id);
     }
-    /// Returns true if a particle that is no child lives here. A birth is tested with the id that it has if no birth
-    /// before it in the step is refused.
+    /// Returns true if a particle with an id lives on this rank. The result is not valid for children. A birth is
+    /// tested with the id that it gets if no earlier birth of the step is refused.
     [[nodiscard]] bool has_place_for(std::uint64_t id) const {
         if (is_alone()) return true;
         if (stays(id)) return is_first();
         return (id / kNeighbours) % size_ == rank_;
     }
-    /// Returns the shortest of the durations of all ranks, in s, all above 0. All ranks call it.
+    /// Returns the shortest duration of all ranks, in s. Durations must be above 0. All ranks must call this function.
     [[nodiscard]] double shortest(double duration) const;
 
-    /// Returns the number of living particles on all ranks. here: number on this rank, which has all if is_alone().
+    /// Returns the number of living particles on all ranks. here: number on this rank, which is the result if
+    /// is_alone().
     [[nodiscard]] std::uint64_t living(std::size_t here) const { return is_alone() ? here : living_; }
     /// Sets the number of living particles at the start, or after a restore.
     void begin(std::uint64_t living) { living_ = living; }
-    /// Counts births on any rank.
+    /// Adds the births of all ranks to the number of living particles.
     void add_births(std::uint64_t count) { living_ += count; }
-    /// Ends a step: all ranks exchange their numbers of living particles. If there are many terms, they are added up.
+    /// Ends a step. All ranks exchange their numbers of living particles, and add up the terms of sums if there are
+    /// many.
     void end_step(std::size_t living_here, const ColliderList& colliders);
 
     /// Returns, on all ranks, the message of the rank with the lowest id among the ranks with a message.
@@ -76,19 +80,19 @@ public:
 
     // Sums that depend on the order of their terms.
 
-    /// Sets the sums at the start of a run, or after a restore. colliders: as RunRecorder::loads().
+    /// Sets the sums at the start of a run, or after a restore. colliders: result of RunRecorder::loads().
     void begin_sums(double unsimulated_time, const std::vector<ColliderTotals>& colliders);
-    /// Records the results of blocks in one substep. id: of all particles here.
+    /// Records the results of blocks in one substep. id: ids of all particles on this rank.
     void note(const std::vector<BlockRecord>& blocks, const std::vector<std::uint64_t>& id);
-    /// Adds up the terms of all ranks on the first one. All ranks call it.
+    /// Adds up the terms of all ranks on the first rank. All ranks must call this function.
     void add_up(const ColliderList& colliders);
     [[nodiscard]] double unsimulated_time() const { return unsimulated_time_; }        ///< s, on the first rank
     [[nodiscard]] const std::vector<ColliderTotals>& loads() const { return loads_; }  ///< on the first rank
 
 private:
-    /// Number of particles with consecutive ids that live together.
+    /// Number of particles with consecutive ids that live on the same rank.
     static constexpr std::uint64_t kNeighbours = 16;
-    /// Number of terms of all ranks from which on they are added up within a run's output interval.
+    /// Number of terms on all ranks above which the terms are added up before the next output.
     static constexpr std::uint64_t kManyTerms = 1'000'000;
 
     struct LostTime {
@@ -102,18 +106,18 @@ private:
     };
 
     std::shared_ptr<Ranks> ranks_;
-    std::size_t rank_;                     // of this process
-    std::size_t size_;                     // ranks
-    std::vector<std::uint64_t> together_;  // ascending
+    std::size_t rank_;                     // rank of this process
+    std::size_t size_;                     // number of ranks
+    std::vector<std::uint64_t> together_;  // ids, ascending
     std::uint64_t living_ = 0;
-    std::uint64_t part_ = 0;  // substeps so far
+    std::uint64_t part_ = 0;  // number of substeps so far
     std::vector<LostTime> new_lost_times_;
     std::vector<Load> new_loads_;
     double unsimulated_time_ = 0.0;
     std::vector<ColliderTotals> loads_;
 };
 
-/// Returns an object as its archive function writes it.
+/// Returns the bytes that the archive function of an object writes.
 template <class Archived>
 [[nodiscard]] std::vector<std::byte> archived_bytes(Archived& object) {
     std::vector<std::byte> bytes;
@@ -122,11 +126,11 @@ template <class Archived>
     return bytes;
 }
 
-/// Returns the lists of all ranks, one after the other, on the first rank. T must allow copies byte by byte.
+/// Returns the lists of all ranks, one after the other, on the first rank. T must be trivially copyable.
 template <class T>
 [[nodiscard]] std::vector<T> gather_list(Ranks& ranks, const std::vector<T>& list);
 
-/// Returns the lists on all ranks.
+/// Returns the lists of all ranks, one after the other, on each rank.
 template <class T>
 [[nodiscard]] std::vector<T> gather_list_to_all(Ranks& ranks, const std::vector<T>& list);
 

@@ -1,4 +1,4 @@
-// Saving and restoring by users.
+// Functions with which users save and restore a run.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,7 +37,8 @@ void Simulation::save(const ByteSink& sink) const {
     save_state(impl().state(), sink);
 }
 
-// A particle that slept when the state was saved may not sleep in this run. Until now it has pressed on its support.
+// Wakes particles that slept in the saved run, if particles may not sleep in this run. Before that, adds the weights
+// with which these particles have pressed on their supports until now.
 void Simulation::Impl::wake_all_sleepers() {
     ParticleStore& store = population.store();
     if (store.may_sleep()) return;

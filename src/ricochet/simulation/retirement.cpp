@@ -13,7 +13,7 @@ namespace {
 /// Counts of removed particles in one block, by reason.
 class LeaverCounts {
 public:
-    /// Counts a removed particle. `lost` counts impulses of a sleeping particle's weight that were too large for the
+    /// Counts a removed particle. lost: number of impulses of a sleeping particle's weight that were too large for the
     /// totals of triangles.
     void add(RemovalReason departure, std::uint64_t lost) {
         ++counts_[static_cast<std::size_t>(departure)];
@@ -29,13 +29,13 @@ public:
     }
 
 private:
-    std::array<std::uint64_t, 5> counts_{};  // by departure
+    std::array<std::uint64_t, 5> counts_{};  // by reason
     std::uint64_t lost_impulses_ = 0;
 };
 
 }  // namespace
 
-// A free flight ends before the particle's life.
+// The lifetime of a particle in free flight is not tested, because a free flight ends before the particle's life.
 RemovalReason Retirement::removal_reason(std::size_t i, double time) const {
     const RemovalReason by_bounds = is_outside(i) ? RemovalReason::out_of_bounds : RemovalReason::none;
     if (population_.schedule().is_in_free_flight(i)) return by_bounds;

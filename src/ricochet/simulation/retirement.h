@@ -13,22 +13,22 @@ namespace ricochet {
 
 /// Reason why a particle leaves.
 enum class RemovalReason : std::uint8_t {
-    none,           ///< it stays
+    none,           ///< the particle stays
     expired,        ///< its lifetime is over
-    absorbed,       ///< by a surface
+    absorbed,       ///< a surface has absorbed it
     shattered,      ///< fragments replace it
     out_of_bounds,  ///< it is outside the bounds
 };
 
-/// Removes particles. It tests all of them once per step; particles in free flight only if there are bounds.
+/// Removes particles at the end of each step. Particles in free flight are tested only if there are bounds.
 class Retirement final : public Module {
 public:
-    /// All must outlive it.
+    /// All references must outlive the object.
     Retirement(const std::optional<Box3>& bounds, Population& population, ActiveMover& mover, RunRecorder& recorder)
         : bounds_(bounds), population_(population), mover_(mover), recorder_(recorder) {}
 
     [[nodiscard]] bool has_bounds() const { return bounds_.has_value(); }
-    /// time: end of the step, in s.
+    /// Returns the reason for which particle i must be removed. time: end of the step, in s.
     [[nodiscard]] RemovalReason removal_reason(std::size_t i, double time) const;
 
     void retire(double time) override;
@@ -40,7 +40,7 @@ private:
     struct Counts {
         std::uint64_t leaving = 0;
         std::uint64_t resting = 0;
-        std::uint64_t held = 0;  ///< resting particles that friction and support hold
+        std::uint64_t held = 0;  ///< resting particles that friction and supports keep in place
     };
 
     [[nodiscard]] bool is_outside(std::size_t i) const {

@@ -42,7 +42,7 @@ std::uint64_t SurfaceTotals::add(std::span<const SurfaceHit> hits) {
 
 namespace {
 
-/// Adds a sum to another one, exactly.
+/// Adds `more` to `sum` without rounding.
 void add_words(FixedPointSum& sum, const FixedPointSum& more) {
     const auto [low, high] = sum.words();
     const auto [low_more, high_more] = more.words();
@@ -81,7 +81,8 @@ Vec3 SurfaceTotals::lasting_impulse(std::size_t surface) const {
 
 namespace {
 
-/// Returns the entries of a list of all blocks in the order of particles, whatever the order in which these were moved.
+/// Returns the entries of one list of all blocks in the order of particles. The order in which particles were moved has
+/// no effect.
 template <class Entry>
 std::vector<Entry> in_order_of_particles(const std::vector<BlockRecord>& blocks,
                                          const std::vector<Entry> BlockRecord::*list) {
@@ -132,7 +133,7 @@ void RunRecorder::record_cut_off(const std::vector<BlockRecord>& blocks) {
     const std::vector<CutOff> all = in_order_of_particles(blocks, &BlockRecord::cut_off);
     for (const CutOff& entry : all) statistics_.unsimulated_time += entry.time;
     statistics_.budget_exhausted += all.size();
-    // If surfaces close on a particle, more bounces would not help.
+    // Pinched particles do not count, because more bounces would not help them.
     for (const BlockRecord& block : blocks) statistics_.budget_exhausted -= block.counts.squeezed;
 }
 
@@ -171,7 +172,7 @@ void RunRecorder::end_generation(std::size_t particles) {
     if (shows_contacts_) contacts_.insert(contacts_.end(), batch_contacts_.begin(), batch_contacts_.end());
 }
 
-// The impacts of one particle are in the order of time already.
+// The sort is stable, because the impacts of one particle are already in the order of events.
 void RunRecorder::put_in_order(std::vector<ContactRecord>& records) {
     std::stable_sort(records.begin(), records.end(), [](const ContactRecord& a, const ContactRecord& b) {
         return a.time != b.time ? a.time < b.time : a.particle < b.particle;
@@ -200,7 +201,8 @@ VerifiedDeformation verified_deformation(const std::vector<Triangle>& triangles,
     return surface;
 }
 
-/// Returns the colliders as they collide, each in its own frame. Planes and shapes have one surface each.
+/// Returns the surfaces of all colliders for the verifier, each in the frame of its collider. A plane or a shape is one
+/// surface.
 std::vector<VerifiedSurface> surfaces_of(const CollisionWorld& world, const MovingColliders& bodies) {
     std::vector<VerifiedSurface> surfaces(world.colliders().size());
     for (std::size_t i = 0; i < surfaces.size(); ++i) {

@@ -28,31 +28,32 @@ namespace ricochet {
 
 class ParticleStore;
 
-// Hits and impulses of every surface, added up by any number of threads to the same bits.
+// Hits and impulses of every surface. The sums are bitwise the same for any number of threads.
 
-/// Sums since the start of the run, one entry per surface. Impulses of impacts and of lasting contact are summed apart.
+/// Sums since the start of the run, one entry per surface. Impulses of impacts and of lasting contact have separate
+/// sums.
 class SurfaceTotals {
 public:
-    /// surfaces: number of surfaces; 0 to keep nothing.
+    /// surfaces: number of surfaces; 0 to record nothing.
     explicit SurfaceTotals(std::size_t surfaces) : entries_(surfaces) {}
 
     [[nodiscard]] bool empty() const { return entries_.empty(); }
     [[nodiscard]] std::size_t size() const { return entries_.size(); }
 
-    /// Adds hits. Returns the number of hits whose impulse was too large for the sums. Does nothing if empty(). Any
-    /// number of threads may call it.
+    /// Adds hits. Returns the number of hits whose impulse was too large for the sums. Does nothing if empty(). Several
+    /// threads may call this function at the same time.
     std::uint64_t add(std::span<const SurfaceHit> hits);
     [[nodiscard]] std::uint64_t hits(std::size_t surface) const {
         return entries_[surface].hits.load(std::memory_order_relaxed);
     }
-    /// Adds the sums of another part of the run, with as many surfaces.
+    /// Adds the sums of another part of the run, which must have the same number of surfaces.
     void add(const SurfaceTotals& other);
     /// Returns the impulse given to the surface, in N s.
     [[nodiscard]] Vec3 impulse(std::size_t surface) const;
-    /// Returns the part of that impulse by lasting contact, in N s.
+    /// Returns the part of impulse() that comes from lasting contact, in N s.
     [[nodiscard]] Vec3 lasting_impulse(std::size_t surface) const;
 
-    /// Saves or restores the sums; a: an archive of core/binary_archive.h.
+    /// Saves or restores the sums. a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a) {
         for (Entry& entry : entries_) {
@@ -95,10 +96,10 @@ struct HeatGain {
 
 /// Cause of a speed beyond kMaxSpeed.
 enum class RunawayCause : std::uint8_t {
-    forces,   ///< on the particle alone, or an integrator that cannot follow them
+    forces,   ///< forces on the particle alone, or an integrator that cannot follow these forces
     others,   ///< springs and forces between particles
     spheres,  ///< impacts and contacts of spheres
-    surface,  ///< a moving collider, or one whose material drives or heats; or a spring of the penalty response
+    surface,  ///< a moving collider, a material that drives or heats, or a spring of the penalty response
 };
 
 /// A particle that has exceeded kMaxSpeed.
@@ -110,7 +111,7 @@ struct Runaway {
 
 /// Results of one block of particles, written by the thread that moves the block.
 struct BlockRecord {
-    SimulationStatistics counts;  ///< of the moves of its particles
+    SimulationStatistics counts;  ///< of the moves of the block's particles
     std::vector<CutOff> cut_off;
     std::vector<ContactRecord> contact_records;
     std::vector<ColliderLoad> loads;
@@ -144,24 +145,24 @@ void add_load(std::vector<ColliderTotals>& totals, const ColliderLoad& load, con
 /// Returns the first particle of all blocks that has exceeded kMaxSpeed.
 [[nodiscard]] std::optional<Runaway> first_runaway(const std::vector<BlockRecord>& blocks);
 
-/// Results of a run besides the particles. Blocks are added in their order, and sums over particles in the order of
-/// particles. So everything is the same for any number of threads.
+/// Results of a run, except the particles. Blocks are added in their order, and terms of particles in the order of
+/// particles. Therefore the results are the same for any number of threads.
 class RunRecorder {
 public:
     /// surfaces: number of surfaces with totals. colliders: number of colliders with loads; 0 if no collider and no
-    /// material moves. shows_contacts: keeps the contact records of a step for its end. collects_contacts: keeps at
-    /// least the records of a spawn generation, for its children.
+    /// material moves. shows_contacts: true to keep all contact records of a step until the next step.
+    /// collects_contacts: true to keep at least the records of the present spawn generation, which spawning needs.
     RunRecorder(std::size_t surfaces, std::size_t colliders, bool shows_contacts, bool collects_contacts)
         : totals_(surfaces),
           loads_(colliders),
           shows_contacts_(shows_contacts),
           collects_contacts_(collects_contacts) {}
 
-    /// Keeps contact records from the next step on, or stops keeping them.
+    /// Sets whether contact records of a whole step are kept, from the next step on.
     void show_contacts(bool shows) { shows_contacts_ = shows; }
     [[nodiscard]] bool shows_contacts() const { return shows_contacts_; }
     void begin_step();
-    /// Forgets the step that has begun. violations: found in the steps before it.
+    /// Discards the step that has begun. violations: violations of the steps before it.
     void forget_step(const std::vector<Violation>& violations) {
         begin_step();
         begin_generation();
@@ -173,7 +174,7 @@ public:
     void record(const std::vector<BlockRecord>& blocks);
     /// Ends a spawn generation. particles: number of moved particles.
     void end_generation(std::size_t particles);
-    /// Puts the contact records in the order of (time, particle, order of events).
+    /// Sorts the contact records by (time, particle, order of events).
     void end_step();
     static void put_in_order(std::vector<ContactRecord>& records);
 
@@ -187,7 +188,7 @@ public:
     [[nodiscard]] const SurfaceTotals& totals() const { return totals_; }
     [[nodiscard]] SurfaceTotals& totals() { return totals_; }
     [[nodiscard]] bool collects_loads() const { return !loads_.empty(); }
-    /// Returns the loads of all colliders, since the start.
+    /// Returns the loads of all colliders since the start of the run.
     [[nodiscard]] std::vector<ColliderTotals>& loads() { return loads_; }
     /// Adds the impacts of a substep.
     void add_pair_impacts(const std::vector<PairImpactRecord>& impacts);
@@ -224,21 +225,21 @@ public:
         double stored = 0.0;
     };
 
-    /// bodies: null if no collider moves. Both must outlive it.
+    /// bodies: empty if no collider moves. Both arguments must outlive the object.
     RunCheck(const CollisionWorld& world, const MovingColliders& bodies);
 
-    /// Adds entries for particles that have been appended. particles: their new number. Must not be called during
-    /// checks. A new particle is watched from its first check on. Only then is a driven body's path at the birth known,
-    /// because earlier impacts in the same step change it.
+    /// Adds entries for appended particles. particles: new number of all particles. Must not be called during checks. A
+    /// new particle is watched only from its first check on. Before this check, other impacts in the same step can
+    /// still change the path that a dynamic body has at the birth.
     void add_spawned(std::size_t particles);
-    /// Checks the motion of particle i up to the given times. `particles` still has its state before the motion.
-    /// Several threads may check different particles.
+    /// Checks the motion of particle i up to the given times. `particles` still contains the state of particle i before
+    /// the motion. Several threads may check different particles.
     void check(std::size_t i, const Particles& particles, const ForceInput& moved, const StepTimes& times,
                std::span<const Segment> segments, std::vector<Violation>& violations, const RecordedParts& motion = {});
     /// Appends violations for impacts of a particle whose rebound does not match the surfaces that were hit.
     static void check_rebounds(std::uint64_t particle, std::span<const RecordedImpact> impacts,
                                std::vector<Violation>& violations);
-    /// Returns the violations of particles that are stalled at the end of the run, at a time, in s.
+    /// Returns the violations of particles that are stalled at the end of the run. time: end of the run, in s.
     [[nodiscard]] std::vector<Violation> check_end(const Particles& particles, double time) const;
     /// Begins to watch all particles at their positions, from a time on, in s. Stalled particles are watched from their
     /// stored times on.
@@ -249,17 +250,18 @@ public:
     /// Returns the violations in impacts of spheres on each other.
     [[nodiscard]] static std::vector<Violation> check_meetings(const std::vector<PairMeeting>& meetings,
                                                                const verify::ImpactAudit& books);
-    /// Returns violations for spheres that overlap at the end of a step, and did not before, or by less. Overlaps up to
+    /// Returns violations for spheres whose overlap at the end of a step is new or larger than before. Overlaps up to
     /// `most` times the smaller radius are allowed.
     [[nodiscard]] std::vector<Violation> check_spheres(const Particles& particles, const TimeSpan& step, double most);
-    /// Returns the largest overlap found by the last call, over the smaller radius.
+    /// Returns the largest overlap that the last call of check_spheres() found, divided by the smaller radius.
     [[nodiscard]] double largest_overlap() const { return overlaps_.largest(); }
 
 private:
     Verifier verifier_;
     SphereOverlaps overlaps_;
-    bool has_looked_ = false;                               // check_spheres() has been called
-    std::vector<std::optional<VerifiedParticle>> watched_;  // nothing: not checked since its birth
+    bool has_looked_ = false;                               // true if check_spheres() has been called
+    std::vector<std::optional<VerifiedParticle>> watched_;  // per particle; empty before the first check of the
+                                                            // particle
 };
 
 }  // namespace ricochet

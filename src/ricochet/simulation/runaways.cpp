@@ -12,14 +12,15 @@
 namespace ricochet {
 namespace {
 
-/// Throws DivergedError if a particle was accelerated beyond kMaxSpeed. A particle that is born faster than light is
-/// allowed, and can hit others.
+/// Throws DivergedError if a particle was accelerated beyond kMaxSpeed. A particle may be faster than light at its
+/// birth, and can then hit other particles.
 class Runaways final : public Module {
 public:
     explicit Runaways(const ModuleParts& parts) : parts_(parts) {}
 
     void before_generation(const ParticleRange& /*generation*/, const TimeSpan& step) override { step_end_ = step.end; }
-    /// If ranks share the run, all of them end in the same step, with the same message as a single process.
+    /// If several ranks share the run, all ranks throw in the same step, with the message that a single process would
+    /// give.
     void correct(const ParticleRange& /*generation*/, const TimeSpan& /*substep*/,
                  std::vector<BlockRecord>& blocks) override {
         const std::optional<Runaway> runaway = first_runaway(blocks);
@@ -32,7 +33,7 @@ public:
     void append() override { note_speed(parts_.population.size() - 1); }
     [[nodiscard]] bool allows_deferred_steps() const override { return true; }
     void archive(BinaryWriter& /*a*/) override {}
-    /// A restored particle counts like one that is born.
+    /// A restored particle counts like a particle at its birth.
     void archive(BinaryReader& /*a*/) override {
         for (std::size_t i = 0; i < parts_.population.size(); ++i) note_speed(i);
     }
@@ -74,7 +75,7 @@ std::string Runaways::message_of(const Runaway& runaway) const {
         return told("another sphere has thrown particle", "at",
                     ": use a shorter time step, slower spheres or weaker forces");
     }
-    // A method that chooses its own steps has found no step that is short enough.
+    // An adaptive method has found no step that is short enough, so a shorter time step would not help.
     const bool is_adaptive = parts_.options.integrator.kind == IntegratorKind::dormand_prince;
     const std::string advice = fmt::format(": the motion has diverged; use {}{}or weaker forces",
                                            is_adaptive ? "softening, " : "a shorter time step, ",
@@ -85,8 +86,8 @@ std::string Runaways::message_of(const Runaway& runaway) const {
 
 }  // namespace
 
-/// Returns the impulses without which the particle would be slower than light, if there are any. Surfaces at rest give
-/// no speed, unless the response has springs, which can diverge.
+/// Returns the cause of a speed beyond kMaxSpeed. Impulses of surfaces or spheres are the cause if the particle would
+/// be slower without them. Surfaces at rest cannot be the cause, unless the response has springs, which can diverge.
 RunawayCause ActiveMover::runaway_cause(std::size_t i, const MoveImpulses& impulses) const {
     const Particles& particles = parts_.store.particles();
     const auto is_slow_without = [&](const Vec3& given) { return length(particles.velocity[i] - given) <= kMaxSpeed; };

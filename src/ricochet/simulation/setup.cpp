@@ -9,7 +9,7 @@
 namespace ricochet {
 namespace {
 
-/// Returns the distance that paths may lie beside their chords. It is larger if the look-ahead follows parabolas.
+/// Returns the chord margin for CollisionWorld. The margin is larger if the look-ahead follows parabolas.
 double chord_margin(const AccelerationSwitches& acceleration, const ForceField& forces) {
     const bool is_straight = forces.common_acceleration() == std::optional(Vec3{});
     return acceleration.look_ahead && forces.is_uniform() && !is_straight ? kLookAheadMargin : kChordMargin;

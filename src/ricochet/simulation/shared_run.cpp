@@ -1,4 +1,4 @@
-// Ranks that share a run: division and balance of its particles, and the whole run on the first rank.
+// Ranks that share a run: division and balancing of the particles, and gathering of the whole run on the first rank.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -16,7 +16,7 @@ struct WholeRun {
     std::optional<std::vector<ColliderTotals>> loads;
     std::optional<SurfaceTotals> totals;
 
-    /// Swaps the parts with those of this rank.
+    /// Swaps these parts with the parts of this rank.
     void exchange(RunRecorder& recorder, Population& population);
 };
 
@@ -29,7 +29,7 @@ SimulationStatistics together(const std::vector<SimulationStatistics>& of_ranks,
     return all;
 }
 
-/// Returns the sums over all ranks on the first one.
+/// Returns the sums over all ranks on the first rank.
 SurfaceTotals gather_totals(Ranks& ranks, SurfaceTotals& own) {
     SurfaceTotals all(own.size());
     for (const std::vector<std::byte>& part : ranks.gather(archived_bytes(own))) {
@@ -94,7 +94,7 @@ void SharedRun::give_away(TransferChoice choice) {
     if (!parts.empty()) population.merge(std::move(parts));
 }
 
-/// Returns the particles that go to a rank; no bytes if there are none.
+/// Returns the particles that move to a rank, as bytes. Returns no bytes if no particle moves to the rank.
 std::vector<std::byte> SharedRun::bytes_for(std::uint32_t rank, const std::vector<std::uint32_t>& goes_to) const {
     if (std::find(goes_to.begin(), goes_to.end(), rank) == goes_to.end()) return {};
     std::vector<std::uint8_t> given;

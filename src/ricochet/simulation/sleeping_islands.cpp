@@ -93,7 +93,7 @@ void SleepingIslands::add(const std::vector<std::uint64_t>& particles,
     ++version_;
 }
 
-/// Uses trees of sleepers, whose roots have the lowest numbers of islands.
+/// Joins islands by disjoint sets of sleepers. The root of a set has the lowest island number.
 void SleepingIslands::join(const std::vector<ContactKey>& touching) {
     const auto slot_of = [&](const Sleeper* sleeper) { return static_cast<std::uint32_t>(sleeper - sleepers_.data()); };
     DisjointSets sets(sleepers_.size());
@@ -106,12 +106,12 @@ void SleepingIslands::join(const std::vector<ContactKey>& touching) {
         const Sleeper* const b = pair.is_wall() ? nullptr : find(pair.other);
         if (a != nullptr && b != nullptr) sets.join(slot_of(a), slot_of(b));
     }
-    // Ascending, so that a root gets its number before the sleepers below it.
+    // Visits sleepers in ascending order, so that a root gets its number before the other sleepers of its set.
     for (std::uint32_t i = 0; i < sets.size(); ++i)
         sleepers_[i].sleeping_island = sleepers_[sets.find(i)].sleeping_island;
 }
 
-/// Finds the contacts at the edge of sleep, the largest loads of sleepers, and their neighbours.
+/// Finds the contacts of sleepers with awake spheres, the largest loads of sleepers, and the neighbours of sleepers.
 void SleepingIslands::look_at_contacts() {
     find_ends();
     edges_.clear();
@@ -129,7 +129,8 @@ void SleepingIslands::look_at_contacts() {
     find_neighbours();
 }
 
-/// Contacts and sleepers are both in the order of particles.
+/// Finds the sleepers at both ends of each contact. One pass suffices, because contacts and sleepers are both sorted by
+/// particle.
 void SleepingIslands::find_ends() {
     ends_.clear();
     std::uint32_t slot = 0;
@@ -169,12 +170,12 @@ std::vector<std::uint64_t> SleepingIslands::islands_of_sleepers(const std::vecto
     return members;
 }
 
-/// Returns marks by sleeper: 1 for some particles and the sleepers that at most so many contacts in a row connect to
-/// them. must_press: follows only contacts under load.
+/// Returns one mark per sleeper. The mark is 1 for sleepers in `particles`, and for sleepers that at most `contacts`
+/// contacts in a row connect to these. must_press: true to follow only contacts under load.
 std::vector<std::uint8_t> SleepingIslands::reached_from(const std::vector<std::uint64_t>& particles, int contacts,
                                                         bool must_press) const {
     std::vector<std::uint8_t> marks(sleepers_.size(), 0);
-    std::vector<const Sleeper*> reached;  // in the order of their distance
+    std::vector<const Sleeper*> reached;  // in the order of their distance, in contacts
     const auto reach = [&](std::uint64_t particle) {
         const Sleeper* const sleeper = find(particle);
         if (sleeper == nullptr || marks[slot_of(*sleeper)] != 0) return;

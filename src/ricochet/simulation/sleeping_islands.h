@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: spheres at rest on each other, which are not moved until something disturbs them.
+/// Private to the simulation: spheres at rest on each other, which are not moved until they wake.
 #pragma once
 
 #include <cstdint>
@@ -30,47 +30,50 @@ public:
 
     [[nodiscard]] bool empty() const { return sleepers_.empty(); }
     [[nodiscard]] bool has(std::uint64_t particle) const { return find(particle) != nullptr; }
-    /// Returns all sleepers, ascending.
+    /// Returns the ids of all sleepers, ascending.
     [[nodiscard]] std::vector<std::uint64_t> particles() const;
-    /// Returns a number that changes whenever the sleepers do.
+    /// Returns a number that changes whenever the set of sleepers changes.
     [[nodiscard]] std::uint64_t version() const { return version_; }
-    /// Returns the number of a sleeper's island: its lowest particle when it was joined. It remains one island if some
-    /// spheres in its middle have woken.
+    /// Returns the number of a sleeper's island. This number is the lowest particle id at the time when the island was
+    /// joined. The island remains one island even if spheres in its middle wake.
     [[nodiscard]] std::uint64_t number_of(std::uint64_t sleeper) const { return find(sleeper)->sleeping_island; }
-    /// Returns the largest impulse, in N s per step, with which a contact pressed a sleeper when it fell asleep.
+    /// Returns the largest impulse, in N s per step, with which a contact pressed on a sleeper when the sleeper fell
+    /// asleep.
     [[nodiscard]] double load_of(std::uint64_t sleeper) const { return find(sleeper)->load; }
     /// Returns the forces of sleepers on surfaces, ascending by particle.
     [[nodiscard]] const std::vector<Weight>& weights() const { return weights_; }
-    /// Returns the contacts of sleepers, as they were when these fell asleep.
+    /// Returns the contacts of sleepers, in the state in which the sleepers fell asleep.
     [[nodiscard]] const WarmStartMemory& contacts() const { return contacts_; }
-    /// Returns the contacts of sleepers with spheres that are awake, ascending. A step needs to examine only these.
+    /// Returns the contacts of sleepers with awake spheres, ascending. A step needs to examine only these contacts.
     [[nodiscard]] const std::vector<WarmStartMemory::Entry>& edges() const { return edges_; }
 
     [[nodiscard]] std::uint32_t sleep_counter(std::uint64_t particle) const;
-    /// Sets the counters at the end of a step, in any order. Spheres that are not in the list have moved.
+    /// Sets the counters at the end of a step. The list can have any order. Spheres that are not in the list have
+    /// moved.
     void set_sleep_counters(std::vector<SleepCounter> still);
 
-    /// Puts particles to sleep, with the contacts of all of them. An earlier contact with a sleeper that has ended
-    /// stays without an impulse, because it shows when the spheres separate for good. Islands that contacts join become
-    /// one.
+    /// Puts particles to sleep. contacts: contacts of all these particles. An earlier contact with a sleeper is kept
+    /// without an impulse if it has ended. It later shows whether the spheres have separated. Islands that contacts
+    /// connect become one island.
     void add(const std::vector<std::uint64_t>& particles, const std::vector<WarmStartMemory::Entry>& contacts,
              const std::vector<Weight>& weights);
-    /// Joins the islands of pairs of spheres that touch, if both sleep.
+    /// Joins the islands of each touching pair of spheres if both spheres sleep.
     void join(const std::vector<ContactKey>& touching);
-    /// Returns all members of the islands of some sleepers, ascending.
+    /// Returns all members of the islands of the given sleepers, ascending.
     [[nodiscard]] std::vector<std::uint64_t> islands_of_sleepers(const std::vector<std::uint64_t>& sleepers) const;
-    /// Returns the sleepers among some particles, and the sleepers that at most so many contacts in a row connect to
-    /// them, ascending.
+    /// Returns the sleepers among the given particles, and the sleepers that at most `contacts` contacts in a row
+    /// connect to them. Ascending.
     [[nodiscard]] std::vector<std::uint64_t> around(const std::vector<std::uint64_t>& particles, int contacts) const;
-    /// Returns the sleepers that are not in `held`, and that no row of contacts under load connects to one in it.
-    /// Ascending.
+    /// Returns the sleepers without a load path to a sleeper in `held`, except the sleepers in `held` themselves. A
+    /// load path is a row of contacts under load. Ascending.
     [[nodiscard]] std::vector<std::uint64_t> not_joined_to(const std::vector<std::uint64_t>& held) const;
-    /// Wakes sleepers, given in ascending order. Returns their contacts, as they were when these fell asleep.
+    /// Wakes sleepers. woken: ids, ascending. Returns the contacts of the woken spheres, in the state in which the
+    /// spheres fell asleep.
     [[nodiscard]] std::vector<WarmStartMemory::Entry> wake(const std::vector<std::uint64_t>& woken);
-    /// Appends the impulses of a sleeper on surfaces in a time, in s.
+    /// Appends the impulses that a sleeper exerts on surfaces in a duration, in s.
     void add_weight(std::uint64_t particle, double duration, std::vector<SurfaceHit>& hits) const;
 
-    /// Saves or restores the state; a: an archive of core/binary_archive.h.
+    /// Saves or restores the state. a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a) {
         archive_entries(a, sleepers_, [&](Sleeper& sleeper) { a(sleeper.particle), a(sleeper.sleeping_island); });
@@ -82,8 +85,8 @@ public:
         ++version_;
     }
 
-    /// Returns false for a state that no run leaves behind. Lists must be in ascending order. The number of an island
-    /// must be at most the ids of its particles. All weights and contacts must belong to sleepers. next_id: id of the
+    /// Returns false if no run can produce the present state. In a valid state, lists are ascending, and the number of
+    /// an island is at most the ids of its particles. All weights and contacts belong to sleepers. next_id: id of the
     /// next particle. surfaces: number of surfaces.
     [[nodiscard]] bool is_sound(std::uint64_t next_id, std::size_t surfaces) const;
 
@@ -123,15 +126,15 @@ private:
     void find_ends();
     void find_neighbours();
 
-    std::vector<Sleeper> sleepers_;                           // ascending by particle, like the others
+    std::vector<Sleeper> sleepers_;                           // ascending by particle, like the other lists
     std::unordered_map<std::uint64_t, std::uint32_t> slots_;  // index in sleepers_ by particle
     std::vector<SleepCounter> sleep_counters_;
     std::vector<Weight> weights_;
     WarmStartMemory contacts_;
-    std::vector<Ends> ends_;  // of the contacts
+    std::vector<Ends> ends_;  // of each contact
     std::vector<WarmStartMemory::Entry> edges_;
     std::vector<Neighbour> neighbours_;  // particles in contact with sleepers, sleeper by sleeper
-    std::vector<std::uint32_t> first_;   // of each sleeper: start of its part of neighbours_; and the end
+    std::vector<std::uint32_t> first_;   // per sleeper: start of its entries in neighbours_; then the end
     std::uint64_t version_ = 0;
 };
 

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: test for free space for a birth among spheres that meet each other.
+/// Private to the simulation: test whether a new sphere has free space among the other spheres.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace ricochet {
 
-/// Motion of a sphere until it meets another: along a parabola, from a time on.
+/// Motion of a sphere along a parabola, from a time on until it meets another sphere.
 struct FlyingBall {
     double time = 0.0;  ///< s
     double radius = 0.0;
@@ -24,14 +24,15 @@ struct FlyingBall {
     [[nodiscard]] Vec3 at(double t) const;
 };
 
-/// The spheres of a step, in cells as large as they are. Their sizes may differ by any factor.
+/// The spheres of a step, in grids whose cells have about the size of their spheres. The sizes of spheres may differ by
+/// any factor.
 class SpawnOccupancy {
 public:
     /// end: end of the step, in s.
     explicit SpawnOccupancy(double end) : end_(end) {}
 
     void add(const FlyingBall& ball);
-    /// Returns true if a ball overlaps no other ball at the later of their two births.
+    /// Returns true if a ball overlaps no other ball at the time of the later of both births.
     [[nodiscard]] bool has_room(const FlyingBall& ball) const;
 
 private:
@@ -44,7 +45,7 @@ private:
     struct CellHash {
         [[nodiscard]] std::size_t operator()(const Cell& cell) const;
     };
-    /// Balls of about one size, each in the cell of the lower corner of its box.
+    /// Balls of similar size. Each ball is in the cell that contains the lower corner of its box.
     struct Level {
         std::unordered_map<Cell, std::vector<std::uint32_t>, CellHash> cells;
         std::vector<std::uint32_t> all;
@@ -56,7 +57,7 @@ private:
 
     double end_;
     std::vector<FlyingBall> balls_;
-    std::map<int, Level> levels_;  // by the exponent of the size of the cells
+    std::map<int, Level> levels_;  // by the binary exponent of the cell size
 };
 
 }  // namespace ricochet

@@ -36,7 +36,7 @@ double SpringsModule::plan(const ParticleRange& generation, const TimeSpan& rest
 
 /// Plans the motion of this process's particles. Returns the planned duration, in s.
 double SpringsModule::plan_here(const TimeSpan& rest) {
-    // A particle under load from other spheres is assumed to keep its velocity, like one supported by a wall.
+    // A particle under load from other spheres is assumed to keep its velocity, like a particle that a wall supports.
     const std::vector<std::uint8_t> pressing = pairs_ != nullptr ? pairs_->pressing() : std::vector<std::uint8_t>();
     const auto hold = [&](std::size_t i, const Vec3& pull) {
         if (!pressing.empty() && pressing[i] != 0) return Vec3{};
@@ -46,7 +46,7 @@ double SpringsModule::plan_here(const TimeSpan& rest) {
                         {parts_.scene.world(), parts_.scene.materials(), parts_.options.resting_speed}, hold);
 }
 
-/// All ranks follow the plan of the first one, or end with its message.
+/// Plans the substep on the first rank. All ranks use this plan, or throw an error with the message of the first rank.
 double SpringsModule::plan_on_first_rank(const TimeSpan& rest) {
     double planned = rest.end - rest.begin;
     std::optional<std::string> message;

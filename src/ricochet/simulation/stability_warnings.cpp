@@ -20,22 +20,24 @@
 namespace ricochet {
 namespace {
 
-/// Stiffness by which twelve neighbours in the closest packing of equal spheres hold a sphere, over that of one
-/// neighbour. It is the sum of the squared cosines between their lines and any other. A mathematical constant.
+/// Stiffness of the twelve neighbours of a sphere in the closest packing of equal spheres, divided by the stiffness of
+/// one neighbour. This ratio is the sum of the squared cosines of the angles between the directions to the neighbours
+/// and any line. A mathematical constant.
 constexpr double kClosestPacking = 4.0;
 
-/// Number of digits with which any two different doubles differ.
+/// Number of decimal digits that distinguishes any two different doubles.
 constexpr int kMostDigits = 17;
 
-/// Returns false for spheres that meet among moving colliders, because methods that kick first would kick them twice.
+/// Returns true if methods that kick first are allowed. They are not allowed for colliding spheres among moving
+/// colliders, because they would kick the spheres twice.
 bool may_kick_first(const SimulationSetup& setup) {
     return !setup.options.particle_contacts ||
            std::none_of(setup.colliders.begin(), setup.colliders.end(),
                         [](const ColliderDescription& c) { return !c.frame.empty() || is_deforming(c); });
 }
 
-/// The two smallest masses of the particles between which a force acts, in kg. Infinite for pinned or missing
-/// particles.
+/// The two smallest masses of the particles between which a force acts, in kg. The mass of a pinned or missing particle
+/// is infinite.
 struct LightestPair {
     std::array<double, 2> masses{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     double count = 0.0;  ///< number of these particles
@@ -49,7 +51,8 @@ struct LightestPair {
     [[nodiscard]] double reduced_inverse() const { return 1.0 / masses[0] + 1.0 / masses[1]; }
 };
 
-/// Fragments are skipped, because their masses are known only in the run.
+/// Returns the two smallest masses of the particles of a force. Fragments are skipped, because their masses are known
+/// only during the run.
 LightestPair lightest_of(const SimulationSetup& setup, const ParticlesForceEntry& entry) {
     const bool is_all = entry.particles.empty() && entry.emitters.empty();
     LightestPair lightest;
@@ -72,7 +75,7 @@ LightestPair lightest_of(const SimulationSetup& setup, const ParticlesForceEntry
     return lightest;
 }
 
-/// Returns both numbers with as few digits as distinguish them.
+/// Returns both numbers as texts with the smallest number of digits that distinguishes them.
 std::array<std::string, 2> told_apart(double step, double bound) {
     for (int digits = 3;; ++digits) {
         std::array<std::string, 2> texts{fmt::format("{:.{}g}", step, digits), fmt::format("{:.{}g}", bound, digits)};
@@ -100,12 +103,14 @@ std::string undamped(const SimulationSetup& setup, const std::string& forces, co
         name_of(setup.options.integrator.kind), forces, whose, others);
 }
 
-/// Largest growth of an energy in a run without a warning. Local, because it decides only about a warning.
+/// Largest relative growth of an energy in a run that causes no warning. Local, because it decides only about a
+/// warning.
 constexpr double kLargestGain = 0.01;
 
-/// Returns a warning if the steps are short enough for the fastest oscillation, but still feed it. midpoint does so,
-/// unless dampers take more. Slower oscillations are fed less by the fourth power of their rate, and damped less by its
-/// square.
+/// Returns a warning if the steps are short enough for stability, but the integrator still adds energy to the fastest
+/// oscillation. The integrator midpoint does this unless dampers remove more energy. For a slower oscillation, the
+/// added energy decreases with the fourth power of its rate, and the damping only with the square. So the fastest
+/// oscillation decides.
 std::optional<std::string> growth_warning(const SimulationSetup& setup, const OscillationRates& rates,
                                           const std::string& forces) {
     const double h = setup.options.time_step;
@@ -129,10 +134,11 @@ std::optional<std::string> spring_warning(const SimulationSetup& setup) {
                     may_be_implicit(setup) ? "the integrator implicit_euler" : "softer springs and dampers");
 }
 
-/// Returns a warning if particles begin in overlap, or nearer than at rest. They need a shorter step until they have
-/// separated.
+/// Returns a warning if particles start in overlap, or nearer to each other than at rest. Such particles need a shorter
+/// step until they have separated.
 std::optional<std::string> start_warning(const SimulationSetup& setup, std::size_t number, double bound_later) {
-    // Packings differ from the closest one by rounding. Local, because it decides only about a warning.
+    // The packing of a setup can differ from the closest packing by rounding. Local, because it decides only about a
+    // warning.
     constexpr double kRounding = 1.0 - 1e-6;
     const OscillationRates rates = rates_at_start(setup, setup.particles_forces[number]);
     const double bound = longest_stable_step(setup.options.integrator.kind, rates);
@@ -171,8 +177,8 @@ struct DraggedParticle {
     std::string name;
 };
 
-/// Returns the lightest, largest and fastest particle of an emitter, in each direction that it may have. Drag affects
-/// it most. Returns nothing for fragments, whose masses are known only in the run, and for clouds.
+/// Returns the particles of an emitter that drag affects most: the lightest, largest and fastest particle in each
+/// possible direction. Returns nothing for clouds, and for fragments, whose masses are known only during the run.
 std::vector<DraggedParticle> most_dragged_of(const EmitterDescription& emitter, std::size_t number) {
     const double lightest = emitter.mass.mean - emitter.mass.spread;
     if (!(lightest > 0.0) || is_cloud(emitter) || (emitter.parent && emitter.parent->share)) return {};
@@ -198,7 +204,7 @@ std::vector<DraggedParticle> most_dragged_of(const EmitterDescription& emitter, 
 }
 
 /// Returns the velocity, in m/s, of the particle after a long time under drag and the common acceleration. The time is
-/// limited to many steps, because drag that takes longer is weak.
+/// limited to kManySteps steps, because drag that needs more time is weak.
 Vec3 falling_velocity(const std::vector<const Force*>& drags, const Vec3& pull, const ForceInput& state, double step) {
     // Local, because it decides only about a warning.
     constexpr double kManySteps = 1000.0;
@@ -220,7 +226,8 @@ double damping_of_all(const std::vector<const Force*>& drags, const ForceInput& 
     return rate;
 }
 
-/// The particle that drag damps fastest, with the velocity at which it does: the first one or that of its fall.
+/// The particle that drag damps fastest, with the velocity at which the damping is fastest. This is either the initial
+/// velocity or the velocity of its fall.
 class FastestDamped {
 public:
     FastestDamped(const SimulationSetup& setup, std::vector<const Force*> drags)
@@ -244,7 +251,7 @@ private:
     template <class Name>
     void take(ForceInput state, const Name& name) {
         compare(state, name);
-        if (state.mass == fallen_.mass && state.radius == fallen_.radius) return;  // falls like the one before
+        if (state.mass == fallen_.mass && state.radius == fallen_.radius) return;  // falls like the previous particle
         fallen_ = state;
         state.velocity = falling_velocity(drags_, pull_, state, step_);
         compare(state, name);
@@ -287,8 +294,8 @@ std::optional<std::string> drag_warning(const SimulationSetup& setup) {
         length(particle.velocity), longest, may_be_implicit(setup) ? " or the integrator implicit_euler" : "");
 }
 
-/// Returns true if children overlap at their births. They begin at the position of their parent: two of one event in
-/// each other, and one whose parent lives on in the parent.
+/// Returns true if children overlap other particles at their births. Children start at the position of their parent.
+/// Therefore two children of one event overlap each other, and a child overlaps a parent that lives on.
 bool is_born_beside_others(const ParentRule& rule) {
     return (!rule.share && rule.on != BirthEvent::death) || rule.count.mean + rule.count.spread >= 1.5;
 }

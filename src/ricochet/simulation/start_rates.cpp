@@ -10,8 +10,8 @@
 namespace ricochet {
 namespace {
 
-/// Returns the largest eigenvalue of a matrix that has none below 0.
-/// Method: O. K. Smith, "Eigenvalues of a symmetric 3 x 3 matrix", CACM 4(4), 1961.
+/// Returns the largest eigenvalue of a matrix without negative eigenvalues. Method: O. K. Smith, "Eigenvalues of a
+/// symmetric 3 x 3 matrix", CACM 4(4), 1961.
 double largest_eigenvalue(const SymmetricMatrix& a) {
     const double mean = a.trace() / 3.0;
     const SymmetricMatrix rest = a + diagonal_matrix(-mean);
@@ -30,7 +30,7 @@ struct Members {
     std::vector<Vec3> velocities;
     std::vector<double> masses;
     std::vector<double> radii;
-    std::vector<double> inverse_masses;  ///< 1/kg, 0 if pinned
+    std::vector<double> inverse_masses;  ///< 1/kg, 0 for a pinned particle
 
     void add(const Particle& particle, std::uint64_t id) {
         ids.push_back(id);

@@ -22,7 +22,7 @@ double lightest_particle(const SimulationSetup& setup) {
     return lightest;
 }
 
-/// Smallest restitution among the materials that surfaces use.
+/// Returns the smallest restitution among the materials that surfaces use.
 double least_restitution(const SimulationSetup& setup) {
     double least = 1.0;
     const auto use = [&](std::uint32_t material) {
@@ -34,7 +34,8 @@ double least_restitution(const SimulationSetup& setup) {
     return least;
 }
 
-/// Compares the substep with the stability bound of the lightest particle on the surface with the most damping.
+/// Returns a warning if the penalty sub-step exceeds the stability bound of the lightest particle on the surface with
+/// the most damping.
 std::vector<std::string> penalty_warnings(const SimulationSetup& setup) {
     const SimulationOptions& options = setup.options;
     const double mass = lightest_particle(setup);
@@ -59,7 +60,7 @@ std::string named(const ColliderDescription& collider, std::size_t number) {
     return collider.name.empty() ? fmt::format("colliders[{}]", number) : fmt::format("'{}'", collider.name);
 }
 
-/// Returns a sentence about spheres that overlap surfaces, if there are any.
+/// Returns a warning if spheres overlap surfaces.
 std::optional<std::string> overlap_warning(const CollisionScene& scene, const Particles& particles) {
     std::size_t count = 0;
     std::size_t first = 0;
@@ -86,8 +87,7 @@ std::optional<std::string> overlap_warning(const CollisionScene& scene, const Pa
         named(scene.list().all()[collider], collider), deepest);
 }
 
-/// Returns a sentence about spheres that overlap others, if there are any, and counts them. Spheres that only touch do
-/// not overlap.
+/// Returns a warning if spheres overlap each other. Counts these spheres. Spheres that only touch do not overlap.
 std::optional<std::string> sphere_overlap_warning(const Particles& particles, std::uint64_t& born_in_overlap) {
     std::vector<Box3> boxes;
     for (std::size_t i = 0; i < particles.size(); ++i) {

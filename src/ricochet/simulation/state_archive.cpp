@@ -19,11 +19,11 @@
 namespace ricochet {
 namespace {
 
-/// Begins every saved state; its last digits change with the layout.
+/// First number of every saved state. Its last digits change with the layout.
 constexpr std::uint64_t kStateFormat = 0x5249434f5354000dULL;
 
 /// Archives the statistics with their layout in memory, so that no counter can be forgotten. The padding after the only
-/// 32-bit counter becomes zero.
+/// 32-bit counter is set to zero.
 template <class Archive>
 void archive_statistics(Archive& a, SimulationStatistics& statistics) {
     static_assert(std::is_trivially_copyable_v<SimulationStatistics>);
@@ -54,7 +54,7 @@ void add_materials(StateHash& hash, const std::vector<Material>& materials) {
     }
 }
 
-/// Hashes the settings on which results depend. The duration is not one of them.
+/// Hashes the settings on which results depend. The duration is not included, because results do not depend on it.
 std::uint64_t settings_hash(const StateParts& parts) {
     const SimulationOptions& options = parts.options;
     StateHash hash;
@@ -94,7 +94,7 @@ void archive(Archive& a, const StateParts& parts) {
     parts.modules.each([&](Module& module) { module.archive(a); });
 }
 
-/// Returns the reason why no run can leave particle i in its restored state, or null.
+/// Returns the reason why no run can produce the restored state of particle i, or null if the state is valid.
 const char* fault_of(const StateParts& parts, std::size_t i) {
     const Particles& p = parts.population.particles();
     const MovingColliders& moving = parts.scene.moving();

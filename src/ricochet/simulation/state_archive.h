@@ -23,7 +23,7 @@ void expect(Archive& a, const T& expected, const char* complaint) {
 /// Adds numbers to a fingerprint.
 void add_numbers(StateHash& hash, auto... values) { (hash.add(static_cast<double>(values)), ...); }
 
-/// Adds the settings of a table to a fingerprint. Absent ones count as 0.
+/// Adds the settings of a table to a fingerprint. Absent settings count as 0.
 void add_settings(StateHash& hash, const auto& object, const auto& table) {
     const auto add = [&](auto member) {
         const auto& value = object.*member;
@@ -38,7 +38,7 @@ void add_settings(StateHash& hash, const auto& object, const auto& table) {
     for (const auto& line : table) std::visit(add, line.member);
 }
 
-/// Parts of a run whose state is saved, or that a state must belong to. Counts are those of the setup.
+/// Parts of a run whose state is saved, or which a restored state must match. The counts are those of the setup.
 struct StateParts {
     const SimulationOptions& options;
     const StepClock& clock;

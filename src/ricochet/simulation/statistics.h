@@ -1,5 +1,6 @@
 /// \file
-/// Statistics of a run, and the table from which the summary, the Python package and sums over ranks follow.
+/// Statistics of a run, and the table that describes them. The summary, the Python package and sums over ranks use this
+/// table.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +9,8 @@
 
 namespace ricochet {
 
-/// Counters over the whole run so far. Their values do not depend on the number of threads. kStatistics has the
-/// meaning of each. Saved states contain the members in this order.
+/// Counters over the whole run so far. Their values do not depend on the number of threads. kStatistics describes the
+/// meaning of each counter. Saved states contain the members in this order.
 struct SimulationStatistics {
     std::uint64_t steps = 0;
     std::uint64_t particle_steps = 0;
@@ -65,19 +66,19 @@ enum class InSummary {
     of_spheres,           ///< if spheres meet
     of_spheres_verified,  ///< if spheres meet; null if the run was not verified
     verified,             ///< null if the run was not verified
-    apart,                ///< not beside the others, or not at all
+    apart,                ///< in another part of the summary, or not included
 };
 
-/// Rule that gives the value for a run from the values of its parts.
+/// Rule that combines the values of the parts of a run to the value of the run.
 enum class OverParts { sum, largest, same };
 
 /// A line of the table.
 struct Statistic {
     using S = SimulationStatistics;
     std::string_view name;
-    /// A member, or a function for a value that is computed from others.
+    /// A member, or a function for a value that is computed from other members.
     std::variant<std::uint64_t S::*, std::uint32_t S::*, double S::*, double (S::*)() const> member;
-    std::string_view meaning;  ///< and the unit, unless the statistic is a count or a ratio
+    std::string_view meaning;  ///< contains the unit, unless the statistic is a count or a ratio
     InSummary in_summary = InSummary::always;
     OverParts over_parts = OverParts::sum;
     std::string_view summary_name = name;
@@ -108,7 +109,7 @@ inline constexpr Statistic kStatistics[] = {
      largest},
     {"resting", &S::resting, "particles at rest after the last step"},
     {"asleep", &S::asleep, "resting particles that cost no time"},
-    // For ranks the sum is computed again, in the order of particles.
+    // If several ranks share the run, this sum is computed again in the order of particles.
     {"unsimulated_time", &S::unsimulated_time, "time lost because a budget was spent, in s, summed over particles"},
     {"budget_exhausted", &S::budget_exhausted,
      "particle-steps that spent their budget of bounces, or of dormand_prince substeps"},
@@ -146,7 +147,7 @@ inline constexpr Statistic kStatistics[] = {
 }  // namespace statistics_table
 using statistics_table::kStatistics;
 
-/// Returns true if the value is unknown unless the run is verified.
+/// Returns true if the value is known only in a verified run.
 [[nodiscard]] constexpr bool is_found_by_verification(const Statistic& line) {
     return line.in_summary == InSummary::verified || line.in_summary == InSummary::of_spheres_verified;
 }

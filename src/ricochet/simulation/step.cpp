@@ -1,4 +1,4 @@
-// One step of the simulation, stage by stage, and the return from a stopped one to the last whole step.
+// One step of the simulation, stage by stage, and the return from a stopped step to the state before it.
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -76,7 +76,7 @@ void Simulation::Impl::record(const ParticleRange& generation, const std::vector
     recorder.add_loads(loads, scene.list());
 }
 
-/// Makes a step. If it is stopped, restores the state before it and throws StoppedError.
+/// Makes a step. If the step is stopped, restores the state before the step and throws StoppedError.
 void Simulation::Impl::step_unless_stopped(const std::function<bool()>& goes_on) {
     if (control.return_point().is_due() && control.is_between_steps()) keep_return_point();
     try {
@@ -96,7 +96,7 @@ void Simulation::Impl::keep_return_point() {
     if (was_deferring) flights.begin_deferring();
 }
 
-/// Restores the kept state, and repeats the steps since then without callbacks.
+/// Restores the state of the return point, and repeats the steps since this state without callbacks.
 void Simulation::Impl::go_back() {
     const ReturnPoint& kept = control.return_point();
     control.replace([&] {
@@ -120,7 +120,8 @@ void Simulation::advance(std::uint64_t count, const std::function<bool()>& go_on
                          const std::function<bool()>& goes_on_within) {
     FreeFlights& flights = impl().population.flights();
     if (count > 1 && impl().population.may_defer()) flights.begin_deferring();
-    // A step can be interrupted only if this rank runs alone. Ranks that share a run stop at the same end of a step.
+    // A step can be interrupted only if this rank runs alone. Ranks that share a run stop only at the end of a step,
+    // which is the same step for all ranks.
     const bool may_stop = goes_on_within && impl().share.is_alone();
     if (!may_stop) impl().control.return_point().invalidate();
     try {

@@ -21,7 +21,7 @@ double seconds_from(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Ends the writing of a state that is too large.
+/// Exception that ends the writing of a state that is too large.
 struct TooLarge {};
 
 }  // namespace
@@ -53,7 +53,7 @@ void StepControl::make_stoppable(const std::function<bool()>& goes_on, const std
     std::atomic<bool> is_stopped = false;
     stop_.set([&] {
         if (is_stopped || (return_point_.is_near() && !goes_on())) {
-            is_stopped = true;  // for the other threads, too
+            is_stopped = true;  // ends the step in the other threads, too
             throw StoppedError("the step was stopped before its end");
         }
     });
@@ -85,7 +85,8 @@ void ContactReporter::require_idle() const {
 
 void ContactReporter::report(const std::vector<ContactRecord>& records) {
     if (!callback_ || records.empty()) return;
-    // The function can replace itself, and must not be destroyed by that while it runs.
+    // Takes the function out of the member. The function can replace the member, and must not be destroyed while it
+    // runs.
     ContactCallback running = take();
     is_reporting_ = true;
     is_replaced_ = false;

@@ -7,13 +7,14 @@ namespace {
 
 /// Sums over the contacts of an island with surfaces.
 struct SupportList {
-    double along = 0.0;   ///< N times N s, sum of the contact forces along the load
+    double along = 0.0;   ///< N times N s, sum of the components of contact forces along the load, times the load
     double strong = 0.0;  ///< N, sum of the magnitudes of the contact forces
 };
 
 double along(const SleepingIslands::Weight& weight, const Vec3& total) { return std::fabs(dot(weight.force, total)); }
 
-/// Returns the part of a load that a contact carries. A smooth wall carries no weight, whatever presses on it.
+/// Returns the fraction of a load that a contact carries. Only forces along the load count, so a smooth vertical wall
+/// carries no weight.
 double share_of(const SleepingIslands::Weight& weight, const Vec3& total, const SupportList& all) {
     return all.along > 0.0 ? along(weight, total) / all.along : length(weight.force) / all.strong;
 }
@@ -43,7 +44,8 @@ void TransmittedLoads::stop(const SleepingIslands& sleeping_islands, std::span<c
     share_out_all(sleeping_islands, totals);
 }
 
-/// Distributes the load along the weight and the load across it apart, because different contacts carry them.
+/// Distributes the component of the load along the weight and the component across it separately, because different
+/// contacts carry them.
 void TransmittedLoads::share_out_all(const SleepingIslands& sleeping_islands,
                                      const std::map<std::uint64_t, Vec3>& totals) {
     std::map<std::uint64_t, Vec3> down;
@@ -57,8 +59,9 @@ void TransmittedLoads::share_out_all(const SleepingIslands& sleeping_islands,
     share_out(sleeping_islands, aside);
 }
 
-/// Distributes loads among the contacts of each island with surfaces, by their forces along the load. If no contact has
-/// one, the magnitudes of the forces count. totals: N s, by island.
+/// Distributes the load of each island among the island's contacts with surfaces, in proportion to their forces along
+/// the load. If no contact has a force along the load, the magnitudes of the forces decide. totals: loads by island, in
+/// N s.
 void TransmittedLoads::share_out(const SleepingIslands& sleeping_islands, const std::map<std::uint64_t, Vec3>& totals) {
     if (totals.empty()) return;
     std::map<std::uint64_t, SupportList> holding;
@@ -80,8 +83,8 @@ void TransmittedLoads::share_out(const SleepingIslands& sleeping_islands, const 
     parts_.mover.press(hits);
 }
 
-/// Finds the balance of each island. Spheres that fell asleep at different times, or not quite at rest, are not in
-/// balance by themselves.
+/// Computes the balance of each island. The stored forces are not in balance if spheres fell asleep at different times
+/// or not completely at rest.
 void TransmittedLoads::find_balances(const SleepingIslands& sleeping_islands, const TimeSpan& step) {
     version_ = sleeping_islands.version();
     balances_.clear();
@@ -100,7 +103,7 @@ void TransmittedLoads::find_balances(const SleepingIslands& sleeping_islands, co
     add_contacts(sleeping_islands, step);
 }
 
-/// Adds the forces of pinned spheres, which are the same as when the island fell asleep.
+/// Adds the forces of pinned spheres. They have not changed since the island fell asleep.
 void TransmittedLoads::add_contacts(const SleepingIslands& sleeping_islands, const TimeSpan& step) {
     const std::vector<Vec3>& position = parts_.store.particles().position;
     for (const WarmStartMemory::Entry& entry : sleeping_islands.edges()) {

@@ -18,8 +18,8 @@
 namespace ricochet {
 namespace {
 
-/// Most births of an emitter. Living particles have 32-bit indices, but particles retire, so more can be born than live
-/// at a time. Local: a limit of input values.
+/// Largest number of births of an emitter. Living particles have 32-bit indices. Particles retire, so more particles
+/// can be born than live at the same time. Local: a limit of input values.
 constexpr double kMostBirths = 1e12;
 
 void validate(const SimulationOptions& options) {
@@ -56,7 +56,7 @@ void validate(const Placement& placement, const Subject& subject) {
     subject.require(placement.scale, kCoordinate, "scale", "");
 }
 
-/// Null pointers and indices past the end.
+/// Refuses null pointers and indices past the end.
 void validate(const TriangleMesh* mesh, const Subject& subject) {
     if (mesh == nullptr) subject.refuse("mesh", "a null pointer", "a mesh");
     for (const Triangle& triangle : mesh->triangles) {
@@ -102,8 +102,8 @@ void validate(const ColliderShape& shape, const Subject& subject, std::size_t ma
     }
 }
 
-/// Returns the largest number of particles that an emitter without parents can emit in a run, without those of its
-/// rate per screen area.
+/// Returns the largest number of particles that an emitter without parents can emit in a run. Particles of its rate per
+/// screen area are not included.
 double most_births(const EmitterDescription& emitter, const SimulationOptions& options) {
     if (emitter.parent) return 0.0;
     const double rate = emitter.rate.mean + emitter.rate.spread +
@@ -149,7 +149,7 @@ void validate_springs(const SimulationSetup& setup) {
     }
 }
 
-/// Counters need names, because the summary and messages call them by their names.
+/// Validates a counter. It needs a name, because the summary and messages use the name.
 void validate(const CounterDescription& counter, std::size_t number) {
     const Subject subject("counter", number, counter.name);
     if (counter.name.empty()) subject.refuse("name", "none", "a name");
@@ -202,7 +202,7 @@ void validate(const ColliderDescription& collider, std::size_t number, std::size
 
 namespace {
 
-/// Refuses two equal names; empty names may repeat.
+/// Refuses equal names. Several empty names are allowed.
 template <class Named>
 void validate_names(const std::vector<Named>& all, std::string_view kind) {
     std::set<std::string_view> taken;

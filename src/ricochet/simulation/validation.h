@@ -21,7 +21,7 @@ namespace ricochet {
 /// The object whose values are checked. All checks throw InputError.
 class Subject {
 public:
-    /// The object is called by its name, or by its number if it has none.
+    /// Messages use the name of the object, or its number if it has no name.
     Subject(std::string_view kind, std::size_t number, std::string_view name = {});
     explicit Subject(std::string_view name) : name_(name) {}
 
@@ -33,7 +33,7 @@ public:
         refuse(what, std::to_string(found), expected);
     }
 
-    /// Refuses the first member that is outside its range; owner: written before its name.
+    /// Refuses the first member that is outside its range. owner: prefix of the member's name in the message.
     void require_settings(const auto& object, const auto& table, std::string_view owner = "") const {
         const std::string refused = first_refusal(object, table, owner);
         if (!refused.empty()) throw InputError(name_ + ": " + refused);
@@ -49,11 +49,11 @@ private:
     std::string name_;
 };
 
-/// Checks everything in a setup that its own class does not check (forces, emitters, springs and frames check their
-/// values). Returns the setup.
+/// Checks all values of a setup that the classes of its parts do not check. Forces, emitters, springs and frames check
+/// their own values. Returns the setup.
 const SimulationSetup& validated(const SimulationSetup& setup);
 
-/// Checks parts that cannot be combined: moving colliders, bodies, spheres that meet, flows, forces between particles.
+/// Refuses parts that cannot be combined: moving colliders, bodies, spheres that meet, flows, forces between particles.
 void validate_together(const SimulationSetup& setup);
 
 /// Checks the settings that change temperatures, and their requirements on particles and on motion.
@@ -63,11 +63,11 @@ void validate_thermal_forces(const SimulationSetup& setup);
 
 /// Checks contacts between spheres, their materials, and their combination with other settings.
 void validate_particle_contacts(const SimulationSetup& setup);
-/// Checks a particle that can meet others: its mass, and that it has one of the materials. columns: of its attributes.
+/// Checks the mass and the material of a particle that can meet other particles. columns: columns of its attributes.
 void validate_sphere(const Particle& particle, std::size_t number, const PairContactSettings& contacts,
                      std::span<const AttributeDescription> columns);
 
-/// Checks a particle. number: among the given particles. columns: number of attributes of particles.
+/// Checks a particle. number: index among the given particles. columns: number of attributes of particles.
 void validate(const Particle& particle, std::size_t number, std::size_t columns);
 /// Checks a collider. materials: number of materials.
 void validate(const ColliderDescription& collider, std::size_t number, std::size_t materials);

@@ -23,7 +23,7 @@ void validate_numbers(const HeatSettings& heat, const Subject& subject) {
                    "at least one of them: nothing would change a temperature");
 }
 
-/// Returns the column of the temperature among the attributes.
+/// Validates the temperature attribute. Returns its column.
 std::size_t validate_attribute(const SimulationSetup& setup, const Subject& subject, const char* why) {
     const auto& all = setup.attributes;
     const auto found = std::find_if(all.begin(), all.end(), [](const AttributeDescription& column) {
@@ -56,7 +56,7 @@ void validate_particles(const SimulationSetup& setup, std::size_t column) {
     for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
         const EmitterDescription& emitter = setup.emitters[k];
         const Subject subject("emitter", k, emitter.name);
-        const bool is_shared = emitter.parent && emitter.parent->share;  // radii follow from the parent's
+        const bool is_shared = emitter.parent && emitter.parent->share;  // radii follow from the parent's radius
         if (!is_shared) validate_radius(subject, *setup.heat, emitter.radius.mean - emitter.radius.spread);
         for (const AttributeSpread& spread : emitter.attributes) {
             if (spread.name != kTemperatureAttribute) continue;

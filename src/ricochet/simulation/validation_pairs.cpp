@@ -1,4 +1,4 @@
-// Validates contacts of spheres with each other: settings, materials, and parts of a setup that exclude them.
+// Validates contacts between spheres: settings, materials, and parts of a setup that exclude such contacts.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,11 +14,11 @@
 namespace ricochet {
 namespace {
 
-/// Names of their own, so that scenes stay readable in a table.
+/// Largest number of named materials. With more materials, the table of pairs in a scene would not be readable.
 constexpr std::size_t kMostMaterials = 1000;
 
-/// kg: beyond them products of masses and their inverses leave the range of the arithmetic. Local: a limit of input
-/// values.
+/// Limits of masses, in kg. Beyond these limits, products of masses and of their inverses leave the range of the
+/// arithmetic. Local: a limit of input values.
 constexpr double kLeastMass = 1e-100;
 constexpr double kLargestMass = 1e100;
 
@@ -97,7 +97,7 @@ void validate_joined(const SimulationSetup& setup, const Subject& subject) {
     }
 }
 
-/// Refuses the method of single impacts if forces press spheres together: it has no lasting contact.
+/// Refuses the method `events` if forces press spheres together, because this method has no lasting contact.
 void validate_method(const SimulationSetup& setup, const Subject& subject) {
     const bool is_pulled = !setup.springs.empty() || !setup.particles_forces.empty();
     if (!is_pulled || setup.options.particle_contacts->method != PairMethod::events) return;
@@ -154,7 +154,7 @@ void validate_particle_contacts(const SimulationSetup& setup) {
     }
     for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
         const EmitterDescription& emitter = setup.emitters[k];
-        if (emitter.parent && emitter.parent->share) continue;  // masses follow from the parent's
+        if (emitter.parent && emitter.parent->share) continue;  // masses follow from the parent's mass
         require_mass(Subject("emitter", k, emitter.name), emitter.mass.mean - emitter.mass.spread);
         require_mass(Subject("emitter", k, emitter.name), emitter.mass.mean + emitter.mass.spread);
     }

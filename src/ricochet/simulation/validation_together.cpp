@@ -59,7 +59,8 @@ void validate_deforming(const ColliderDescription& collider, const SimulationOpt
     }
 }
 
-/// Only the exact response knows where a collider is within a step.
+/// Validates moving colliders. They require the exact response, because only this response computes positions of
+/// colliders within a step.
 void validate_moving_colliders(const SimulationSetup& setup) {
     for (std::size_t k = 0; k < setup.colliders.size(); ++k) {
         const ColliderDescription& collider = setup.colliders[k];
@@ -125,7 +126,8 @@ void validate_bodies(const SimulationSetup& setup) {
     }
 }
 
-/// Children that go with their parents, which are moved before them, each by itself.
+/// Refuses parts of a setup that exclude clouds. In a cloud, parents are moved before their children, and each particle
+/// is moved separately.
 void validate_clouds(const SimulationSetup& setup) {
     const auto found = std::find_if(setup.emitters.begin(), setup.emitters.end(), is_cloud);
     if (found == setup.emitters.end()) return;

@@ -1,5 +1,5 @@
 /// \file
-/// Counters: disks that particles pass without touching them.
+/// Counters: disks that count the particles that pass through them, and do not affect the motion.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,9 @@
 
 namespace ricochet {
 
-/// A disk at rest that counts the particles whose centres pass it. The disk belongs to its front side, to which the
-/// normal points. So a centre exactly on the disk has passed it forward, and not yet backward.
+/// A disk at rest that counts the particles whose centres pass through it. The normal points to the front side. The
+/// points of the disk belong to the front side. A centre that moves forward has therefore passed when it is exactly on
+/// the disk. A centre that moves backward has not passed yet when it is there.
 struct CounterDescription {
     std::string name;      ///< not empty, and different from the names of other counters
     Vec3 center;           ///< m

@@ -12,7 +12,7 @@ CounterTally::CounterTally(std::span<const CounterDescription> counters, bool ha
     for (const CounterDescription& counter : counters) totals_.push_back({counter.name});
 }
 
-// The order of the passages does not matter, because they are added in the order of particles.
+// Adds the passages in the order of particle ids, so that the sums do not depend on the order of the blocks.
 void CounterTally::record(const ParticleRange& /*generation*/, const std::vector<BlockRecord>& blocks,
                           std::vector<ColliderLoad>& /*loads*/) {
     std::vector<Passage> passages;

@@ -10,7 +10,7 @@
 
 namespace ricochet {
 
-/// Counters with their totals. Adds up the passages that the movers have found.
+/// The counters and their totals. Adds up the passages that the movers find.
 class CounterTally final : public Module {
 public:
     /// has_pieces: see PassageFinder.

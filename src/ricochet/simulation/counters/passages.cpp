@@ -10,10 +10,11 @@
 namespace ricochet {
 namespace {
 
-/// Halvings of the time of a passage. Local: a double has no more bits, and more halvings would change nothing.
+/// Number of bisections in the search for the time of a passage. Local: more bisections would exceed the precision of a
+/// double.
 constexpr int kPassageHalvings = 64;
 
-/// Times within a piece at which its height above a plane is extreme, in s, in ascending order.
+/// Times, in s, at which a piece of a path reaches an extreme height above a plane, in ascending order.
 struct Extremes {
     std::array<double, 2> time{};
     int count = 0;
@@ -23,7 +24,7 @@ struct Extremes {
     }
 };
 
-/// Returns the extremes of the height along a path. Between them the height rises or falls.
+/// Returns the extremes of the height along a path. Between two extremes the height is monotonic.
 Extremes extremes_of(const Path& path, const Vec3& normal, double duration) {
     const double a = 3.0 * dot(normal, path.c[3]);
     const double b = 2.0 * dot(normal, path.c[2]);
@@ -31,7 +32,8 @@ Extremes extremes_of(const Path& path, const Vec3& normal, double duration) {
     Extremes extremes;
     const double discriminant = b * b - 4.0 * a * c;
     if (!(discriminant > 0.0)) return extremes;
-    // The root with the larger magnitude has no cancellation; the other follows from the product of both.
+    // The formula for the root of larger magnitude has no cancellation. The other root follows from the product of both
+    // roots.
     const double q = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
     double first = a != 0.0 ? q / a : -1.0;
     double second = q != 0.0 ? c / q : -1.0;
@@ -46,13 +48,13 @@ bool is_still(const FlownPiece& piece) {
            (piece.path.c[1] == Vec3{} && piece.path.c[2] == Vec3{} && piece.path.c[3] == Vec3{});
 }
 
-/// Follows one particle past one disk.
+/// Follows one particle and finds its passages through one disk.
 class DiskTrace {
 public:
     DiskTrace(const CounterDisk& disk, const Vec3& from) : disk_(disk), is_in_front_(disk.is_in_front(from)) {}
 
-    /// Follows a path for a duration, in s. next: stored position at which the particle continues; it replaces the end
-    /// of the path, from which it differs by the distance of a safe position from a contact.
+    /// Follows a path for a duration, in s. next: stored position at which the particle continues. It replaces the end
+    /// of the path, because after a contact the particle continues at a safe position.
     template <class Report>
     void follow(const Path& path, double duration, const Vec3& next, const Report& report) {
         double from = 0.0;

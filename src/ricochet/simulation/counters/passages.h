@@ -1,9 +1,10 @@
 /// \file
 /// Private to the simulation: passages of particles through the disks of counters.
 ///
-/// The side of a stored position decides all. A path between two stored positions passes the plane of a disk as often
-/// as its side changes there, in turns forward and backward. The side of a stored position is computed in the same way
-/// in the step that ends there and in the step that begins there. So no passage is lost or counted twice.
+/// Passages follow from the sides of a disk's plane on which the stored positions lie. A path between two stored
+/// positions passes the plane each time that it changes sides, alternately forward and backward. The step that ends at
+/// a stored position and the step that begins there compute the same side. Therefore no passage is lost or counted
+/// twice.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,7 @@
 
 namespace ricochet {
 
-/// A particle has passed the disk of a counter.
+/// Passage of a particle through the disk of a counter.
 struct Passage {
     std::uint32_t counter = 0;   ///< index in the setup
     bool is_forward = false;     ///< along the normal
@@ -30,7 +31,7 @@ struct MovedParticle {
     std::uint64_t id = 0;
     double mass = 0.0;  ///< kg
     Vec3 from;          ///< m, stored position at the start of the move
-    Vec3 to;            ///< m, stored position at its end
+    Vec3 to;            ///< m, stored position at the end of the move
 };
 
 /// The disk of a counter.
@@ -52,10 +53,10 @@ private:
     double radius_;
 };
 
-/// Finds the passages of moved particles. Any number of threads can use it at once.
+/// Finds the passages of moved particles. Several threads can use one object at the same time.
 class PassageFinder {
 public:
-    /// has_pieces: the response reports the pieces of paths; otherwise it moves particles along segments.
+    /// has_pieces: true if the response reports the pieces of paths, false if it moves particles along segments.
     PassageFinder(std::span<const CounterDescription> counters, bool has_pieces);
 
     /// Returns true if trace() needs the segments of a move instead of its pieces.
@@ -64,7 +65,8 @@ public:
     void trace(const MovedParticle& moved, std::span<const FlownPiece> pieces, std::vector<Passage>& passages) const;
     /// Appends the passages of a particle along segments.
     void trace(const MovedParticle& moved, std::span<const Segment> segments, std::vector<Passage>& passages) const;
-    /// Returns false if no path between two positions passes a plane, if it lies within `margin`, in m, of its chord.
+    /// Returns false if no path between two positions can pass the plane of a disk. A path must lie within `margin`, in
+    /// m, of its chord.
     [[nodiscard]] bool may_pass(const Vec3& from, const Vec3& to, double margin) const;
 
 private:

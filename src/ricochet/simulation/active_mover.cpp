@@ -27,7 +27,8 @@ bool flies_on(const MovingParticle& moved, const MoveOutcome& outcome) {
     return moved.contact.count == 0 && moved.contact.cascade_left == 0.0 && outcome.end == MoveEnd::moving;
 }
 
-/// Returns false if the particle cannot reach a dynamic body without an impact on something else.
+/// Returns true if a dynamic body is within the distance that the particle can travel in a duration, in s. Impacts are
+/// not considered.
 bool is_near_dynamic_body(const ResponseRules& rules, const ForceInput& state, double duration) {
     const double speed = length(state.velocity) + duration * length(rules.forces.acceleration(state));
     const double reach = state.radius + 2.0 * duration * speed;
@@ -137,8 +138,9 @@ void ActiveMover::apply_velocity_change(std::size_t i, const Vec3& change, doubl
     parts_.store.particles().spin[i] = parts_.store.spin_of(i, particle);
 }
 
-/// Grows the core of a sphere in overlap with the distance of its centre to the surfaces, at the time of its stored
-/// position. The core keeps its radius while the sphere is in contact. Without an overlap, the core is discarded.
+/// Updates the core of an overlapping sphere, at the time of the stored position. The core grows with the distance of
+/// the surfaces from the centre, and never shrinks. In contact, the core keeps its radius. Without an overlap, the core
+/// is removed.
 void ActiveMover::grow_core(std::size_t i, double time) {
     ParticleStore& store = parts_.store;
     if (!store.cores().has(i) || store.is_fixed(i)) return;

@@ -117,8 +117,8 @@ public:
     [[nodiscard]] const Response& response() const { return response_; }
     /// Returns a mover of the same particles by another response, which must outlive it.
     [[nodiscard]] ActiveMover with(const Response& response) const { return {parts_, response}; }
-    /// Resets the counts of bounces. Must be called at the start of a step that dynamic bodies or coupled motion may
-    /// divide into substeps, because a bounce budget applies to the whole step.
+    /// Resets the counts of bounces, because a bounce budget applies to a whole step. Must be called at the start of a
+    /// step that dynamic bodies or coupled motion may divide into substeps.
     void begin_step() { bounces_.assign(parts_.store.size(), 0); }
     /// Moves every particle of the set alone, on all threads. Writes one record per block of the set.
     void move(const ActiveSet& active, const TimeSpan& step, std::vector<BlockRecord>& blocks);

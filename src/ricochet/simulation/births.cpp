@@ -18,8 +18,8 @@ constexpr std::size_t kBirthBlock = 64;
 /// Largest number of births in a wave, that is, of births that are taken off the schedule together. Larger waves need
 /// more memory for refused births. Smaller waves need more communication.
 constexpr std::uint64_t kMostInWave = std::uint64_t{1} << 20U;
-/// Largest wave of which every rank makes all births if births can be refused. For so few births this is faster than
-/// communicating the refusals.
+/// Largest number of births in a wave for which every rank makes all births, if births can be refused. For so few
+/// births this is faster than communicating the refusals.
 constexpr std::size_t kFewBirths = 16;
 
 /// Largest number of time slices into which replay() divides the births, so that no list of births becomes long.

@@ -3,10 +3,10 @@
 /// parent, along the parent's path.
 ///
 /// Between two consecutive knots, the path of a parent is a cubic polynomial (flight_knots.h). The path of a child is
-/// the sum of the parent's path and of the child's own motion about the parent. It is divided into pieces, and each
-/// piece is swept and certified like the path of any particle. A child bounces off surfaces on its own. After a bounce,
-/// the response integrates the accelerations of both motions. At an impact of the parent, the child's velocity changes
-/// by the same amount as the parent's velocity.
+/// the sum of the parent's path and of the child's own motion about the parent. This sum is divided into pieces, and
+/// each piece is swept and certified like the path of any particle. A child bounces off surfaces on its own. After a
+/// bounce, the response integrates the accelerations of both motions. At an impact of the parent, the child's velocity
+/// changes by the same amount as the parent's velocity.
 #pragma once
 
 #include <cstddef>

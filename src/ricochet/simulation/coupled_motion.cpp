@@ -24,8 +24,8 @@ constexpr int kMostForesights = 16;
 /// prediction is used.
 constexpr int kMostWorse = 3;
 
-/// Ratio of the residuals of half a step and a whole step below which the half counts as better. Local: a rule of the
-/// search for the best prediction.
+/// Half of a step counts as better if its residual is below this fraction of the residual of the whole step. Local: a
+/// rule of the search for the best prediction.
 constexpr double kWorthCutting = 0.5;
 
 /// Number of halvings in a row without improvement after which the search stops. Local, because the best prediction is
@@ -237,7 +237,7 @@ SystemStep CoupledMotion::among_surfaces(double duration, const Particles& parti
 }
 
 /// Predicts the supports in a step. The supports depend on the motion in the step, and the motion depends on the
-/// supports. The step is therefore solved repeatedly until it agrees with the prediction, and only then to the close
+/// supports. The step is therefore solved repeatedly until it agrees with the prediction, and only then with the close
 /// tolerances.
 CoupledMotion::SupportPrediction CoupledMotion::predict(double duration, std::span<const Vec3> spins,
                                                         const PlannedContacts& contacts) const {

@@ -168,7 +168,7 @@ private:
         std::vector<SupportConstraints> held;
         double residual = 0.0;  // energy that springs gain from errors of the prediction, in J
         bool has_settled = false;
-        bool is_close = false;  // solved to kNewtonTolerance
+        bool is_close = false;  // true if solved to kNewtonTolerance
     };
     [[nodiscard]] SystemStep among_surfaces(double duration, const Particles& particles,
                                             const PlannedContacts& contacts);
@@ -187,8 +187,8 @@ private:
     std::vector<Flight> flights_;         // of the members
     std::vector<CoupledMember> coupled_;  // coupling of each flight
     PlanDeviations deviations_;           // deviations of the members from their flights
-    double first_try_ = 0.0;  // s, first duration that an adaptive method tries, or the implicit method if supports
-                              // need substeps; 0: unknown
+    double first_try_ = 0.0;  // s, tried first by an adaptive method, or by the implicit method if supports need
+                              // substeps; 0: unknown
     std::uint64_t unsolved_steps_ = 0;
     bool is_unsolved_ = false;    // true if a substep of the present step is unsolved
     std::uint32_t substeps_ = 0;  // number in the present step, for an adaptive method

@@ -133,7 +133,7 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
 }
 
 RestingLoad DrivenMotion::resting_load_on(std::size_t body, std::span<const ColliderLoad> preview, double until) const {
-    // At the end of the plan, rounding may give a load a slightly later time. All loads of the preview then count.
+    // If the plan is not cut, all loads of the preview count. Rounding may give a load a time slightly after the plan.
     const bool is_whole = until >= planned_end();
     return loads_on_bodies().resting_load_on(body, preview, is_whole ? std::numeric_limits<double>::infinity() : until);
 }
@@ -181,8 +181,8 @@ double DrivenMotion::most_change(std::size_t body) const {
 
 DrivenMotion::Fit DrivenMotion::fit_of(std::size_t body, const RestingLoad& resting_load, double duration) const {
     const Wrench& planned = loads_[body];
-    // Divides by a minimum duration, because in a substep that impacts have shortened, a slow impact must not count as
-    // a lasting force.
+    // Divides by at least a minimum duration. Otherwise a slow impact would count as a large lasting force in a substep
+    // that impacts have shortened.
     const double lasts = std::max(duration, kShortestLoad * shortest_part_);
     const Wrench back{resting_load.wrench.impulse / lasts, resting_load.wrench.moment / lasts};
     const Wrench lacks{back.impulse - planned.impulse, back.moment - planned.moment};
@@ -194,8 +194,8 @@ DrivenMotion::Fit DrivenMotion::fit_of(std::size_t body, const RestingLoad& rest
     return {back, change > 1.1 * most ? most / change : 1.0, lacking <= kLoadResidual * most, lacking <= most};
 }
 
-/// Returns true if the substep must end at a time, in s, while a large load rests on a body and is recorded only after
-/// that time. The share of the load before that time is then unknown.
+/// Returns true if the substep must end at a time, in s, while a large load rests on a body. The load is recorded only
+/// after that time. The share of the load before that time is then unknown.
 bool DrivenMotion::is_cut_in_contact(std::span<const ColliderLoad> preview, double end) const {
     if (end >= planned_end()) return false;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -209,7 +209,8 @@ bool DrivenMotion::is_cut_in_contact(std::span<const ColliderLoad> preview, doub
     return false;
 }
 
-/// Begins a round of planning. Returns false if bodies react differently from the preview.
+/// Begins a round of planning. Returns false if the reaction of bodies to impacts differs from the reaction in the
+/// preview.
 bool DrivenMotion::begin_round(std::span<const ColliderLoad> preview, double end, int round) {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         if (round % kMostLoadRounds == 0) relaxations_[k].begin_search();
@@ -320,7 +321,7 @@ bool DrivenMotion::plan_without_loads(std::span<const ColliderLoad> preview, dou
 /// Limits the next substep, so that substeps grow gradually. Only the mean of a resting load over a substep is known.
 /// The mean can be small in a long substep in which a load comes and goes.
 void DrivenMotion::limit_next_substep(double duration) {
-    // Local: a rule of this step control, whose substeps are checked.
+    // Local: a rule of this step control, which checks each substep.
     constexpr double kGrowth = 2.0;
     if (was_shortened_) {
         longest_part_ = kGrowth * duration;

@@ -23,8 +23,8 @@ namespace {
 
 constexpr double kExplodes = std::numeric_limits<double>::infinity();
 
-/// Largest number of steps of a trial. After so many steps, rounding errors are far below a growth that reaches a
-/// hundredth in a long run.
+/// Largest number of steps of a trial. After so many steps, a growth that reaches a hundredth in a long run is far
+/// above rounding errors.
 constexpr std::size_t kMostTrialSteps = 4096;
 
 /// Largest growth of the energy without a warning, divided by the largest kinetic energy. Local, because it decides

@@ -59,7 +59,7 @@ void EnergyWatch::watch(const SystemStep& step) {
         if (!step.mutual_start.empty()) pull += step.mutual_start[k];
         if (!step.mutual_start.empty()) pull += (step.mutual_end.empty() ? step.mutual_start : step.mutual_end)[k];
         // Uses the displacement that the mean velocity gives. The path of forward Euler depends only on the velocity at
-        // the start, so forces on a particle at rest would do no work along it.
+        // the start. Along this path, forces on a particle at rest would do no work.
         return 0.25 * step.duration * system_.mass(k) * dot(pull, v0 + v1);
     };
     const auto sum = [&](auto&& term) {

@@ -57,7 +57,7 @@ public:
     /// Returns the state of a particle after its deferred steps.
     [[nodiscard]] PhaseState after(std::size_t i, PhaseState state) const {
         std::size_t k = made_[i];
-        if (k >= steps_.size()) return state;  // one step more is possible if the present step has failed
+        if (k >= steps_.size()) return state;  // a failed step can leave made_[i] above the number of steps
         state = steps_[k++].step(state.position, state.velocity);
         if (is_straight_ && moves_far(state.velocity)) return straight_on(k, state);
         for (; k < steps_.size(); ++k) state = steps_[k].step(state.position, state.velocity);
@@ -123,7 +123,7 @@ public:
     /// Discards deferred steps without integrating them.
     void drop_deferred() { deferred_.reset(); }
 
-    // These functions have the same meaning as those of Particles.
+    // These functions have the same meaning as the functions of Particles.
     void append();
     void reserve(std::size_t more);
     void compact(const std::vector<std::uint8_t>& keep);

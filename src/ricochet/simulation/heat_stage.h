@@ -15,9 +15,8 @@
 
 namespace ricochet {
 
-/// Measures the energy that surfaces turn into heat, from the record of a particle's move. This energy is the kinetic
-/// energy that the particle loses in contact, plus the work of forces during the contact, minus the work on moving
-/// surfaces.
+/// Measures the energy that surfaces turn into heat, from the record of a particle's move. This energy is the loss of
+/// kinetic energy in contact, plus the work of forces in contact, minus the work on moving surfaces.
 class FrictionMeter {
 public:
     /// bodies: empty if no collider moves. All arguments must outlive the object.

@@ -53,7 +53,7 @@ private:
     int count_ = 0;
     Wrench wrench_;
     double alone_ = 0.0;    // J, that the body would gain if each impact acted alone at its time
-    double dynamic_ = 0.0;  // J, part of alone_: energy that the body would gain from each impact at rest
+    double dynamic_ = 0.0;  // J, part of alone_ that the body would also gain at rest
     double lost_ = 0.0;     // J, that the impacts would dissipate if each acted alone
     double size_ = 0.0;     // J, sum of the magnitudes of works and lost energies
 };

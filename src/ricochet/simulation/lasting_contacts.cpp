@@ -57,7 +57,7 @@ void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
     wake(gone, step.begin);
 }
 
-/// Sleepers farther away wake later if they are pushed. Sleepers that have no support any more wake immediately.
+/// Sleepers farther away wake later if they are pushed. Sleepers that have lost their support wake immediately.
 void LastingContacts::wake(const std::vector<std::uint64_t>& particles, double time, int contacts) {
     if (particles.empty()) return;
     const int farther = std::max(0, ++wakings_ - kWakingsAlone);

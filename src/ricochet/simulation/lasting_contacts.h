@@ -51,8 +51,8 @@ public:
     [[nodiscard]] std::vector<std::uint64_t> loaded_sleepers(std::span<const PairImpactRecord> impacts,
                                                              const ContactIslandTrace& trace,
                                                              const TimeSpan& step) const;
-    /// Wakes sleepers at a time, in s. Also wakes other sleepers that at most `contacts` contacts in a row connect to
-    /// them. Repeated calls in a step reach farther.
+    /// Wakes sleepers, and all sleepers within a distance of `contacts` contacts from them, at a time, in s. After
+    /// several calls in a step, further calls reach farther.
     void wake(const std::vector<std::uint64_t>& particles, double time, int contacts = 1);
     /// Returns true if a particle of the range sleeps in an island. i: index in the particles' arrays.
     [[nodiscard]] bool sleeps(std::size_t i) const { return traces_.is_asleep[i - first_] != 0; }

@@ -28,7 +28,7 @@ namespace ricochet {
 /// Load of the particles that rest on a body in a substep.
 struct RestingLoad {
     Wrench wrench;           ///< N s, and N m s about the body's moment_center()
-    double heaviness = 0.0;  ///< sum over the particles of mass divided by the body's effective mass at the contact
+    double heaviness = 0.0;  ///< sum of the ratios of a particle's mass to the body's effective mass at its contact
 };
 
 class LoadRelaxation {
@@ -38,8 +38,8 @@ public:
     /// Begins a search for a load.
     void begin_search() { low_ = high_ = last_ = std::nullopt; }
     [[nodiscard]] bool is_searching() const { return low_.has_value(); }
-    /// Begins a search for a shorter substep. Returns the first load to try. part: fraction of the duration that is
-    /// left.
+    /// Begins a search for a shorter substep. Returns the first load to try. part: duration of the shorter substep as a
+    /// fraction of the previous duration.
     [[nodiscard]] Wrench shortened(double part);
     /// Returns the estimated load of this substep minus the load of its first plan.
     [[nodiscard]] Wrench variation(const Wrench& planned, const Wrench& back, double heaviness) const;
@@ -71,7 +71,7 @@ private:
     bool is_heavy_ = false;
     double heaviness_ = 0.0;  // heaviness of the last resting load
     Wrench first_;
-    Wrench fitting_;  // estimate of the load with which plan and returned load agree
+    Wrench fitting_;  // estimate of the planned load that equals its returned load
     std::optional<Tried> low_;
     std::optional<Tried> high_;
     std::optional<Tried> last_;

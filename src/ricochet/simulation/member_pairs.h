@@ -13,8 +13,8 @@
 namespace ricochet {
 
 /// Pairs of members, given by member numbers. Members are ordered by position, so their numbers change from step to
-/// step. In an island with most of the particles, pairs are stored by particle numbers instead, so that NeighbourPairs
-/// can reuse its data in the next step. Both methods give the same pairs.
+/// step. In an island with most of the particles, pairs are stored by particle numbers instead. NeighbourPairs can then
+/// reuse its data in the next step. Both methods give the same pairs.
 class MemberPairs {
 public:
     /// Finds the pairs of members whose boxes overlap. boxes: one per member.

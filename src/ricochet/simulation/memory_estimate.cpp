@@ -149,8 +149,8 @@ private:
         for (std::size_t k = 0; k < setup_.colliders.size(); ++k) {
             const ColliderShape& shape = setup_.colliders[k].shape;
             add({MemoryNeed::Part::collider, k}, triangles_of(shape), each);
-            // Two copies are the given positions and the positions in the world. options.verify needs a third copy, and
-            // boxes of the same size.
+            // There are two copies: the given positions and the positions in the world. options.verify needs a third
+            // copy, and boxes of the same size.
             const double copies = setup_.options.verify ? 4.0 : 2.0;
             if (positions_of(shape) > 0.0) estimate_.needs.back().bytes += copies * positions_of(shape);
         }

@@ -1,6 +1,6 @@
 /// \file
-/// Private to the simulation: modules, which are parts of a run that the stages of a step call, and the list of
-/// modules.
+/// Private to the simulation: modules, and the list of modules. A module is a part of a run that the stages of a step
+/// call.
 ///
 /// A module owns the objects of one capability. A stage calls a module once for all particles of a generation or a
 /// block, never for a single particle. Objects that take part in the motion of single particles are in MoveObservers.
@@ -42,8 +42,8 @@ public:
     /// the substep that an earlier module has planned.
     virtual double plan(const ParticleRange& /*generation*/, const TimeSpan& rest) { return rest.end; }
     virtual void before_substep(const ParticleRange& /*generation*/, const TimeSpan& /*substep*/) {}
-    /// Called after the particles that no module moves. Modules move their own particles here. blocks: records of the
-    /// substep so far.
+    /// Moves the module's own particles. The particles that no module moves have been moved before. blocks: records of
+    /// the substep so far.
     virtual void after_substep(const ParticleRange& /*generation*/, const TimeSpan& /*substep*/,
                                std::vector<BlockRecord>& /*blocks*/) {}
     /// Corrects velocities after all particles of the generation have been moved. Throws if a run cannot continue with
@@ -81,10 +81,10 @@ public:
 
     /// Returns true if the module does not need the positions of particles in free flight in every step.
     [[nodiscard]] virtual bool allows_deferred_steps() const { return false; }
-    /// Returns the reason why no run can produce the restored state of particle i, or null if the state is valid.
+    /// Returns the reason why no run can produce the restored state of particle i. Returns null for a valid state.
     [[nodiscard]] virtual const char* fault_of(std::size_t /*i*/) const { return nullptr; }
-    /// Returns the reason why no run can produce the restored state of the module at a time, in s, or null if the state
-    /// is valid.
+    /// Returns the reason why no run can produce the module's restored state at a time, in s. Returns null for a valid
+    /// state.
     [[nodiscard]] virtual const char* fault(double /*time*/) const { return nullptr; }
     /// Adds the settings of the module to the fingerprint of a saved state.
     virtual void add_to_fingerprint(StateHash& /*hash*/) const {}

@@ -5,9 +5,9 @@
 /// centre that overlaps no surface. Therefore the deepest overlap of the sphere never becomes deeper, and contacts are
 /// ordinary contacts of a ball without overlap. No force pushes the sphere out of the overlap. While the sphere touches
 /// no surface, its core grows with the distance to the surfaces, up to the sphere's radius. A core never shrinks. A
-/// sphere that has left its overlap has no core any more. Energies are those of the sphere, because its contacts act at
-/// its own surface. A core whose radius is the fraction c of the sphere's radius spins 1 / c times as fast. The core's
-/// surface speed and energy then equal those of the sphere.
+/// sphere that has left its overlap has no core any more. Energies belong to the sphere, because contacts act at the
+/// sphere's surface. A core whose radius is the fraction c of the sphere's radius spins 1 / c times as fast. The
+/// surface speed and the energy of the core then equal the values of the sphere.
 #pragma once
 
 #include <cstddef>

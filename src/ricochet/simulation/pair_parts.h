@@ -15,7 +15,7 @@
 
 namespace ricochet {
 
-/// Parts of the simulation that move spheres which touch each other. All must outlive the object.
+/// Parts of the simulation that move spheres which touch each other. All must outlive the objects that use this struct.
 struct PairParts {
     ParticleStore& store;
     QuerySchedule& schedule;
@@ -23,7 +23,7 @@ struct PairParts {
     const Response& response;
     const CoupledMotion& coupled;
     const PairContactSettings& settings;
-    PairMaterials materials;                          ///< of the settings
+    PairMaterials materials;                          ///< materials of the settings
     std::optional<std::size_t> material_column = {};  ///< column of kMaterialAttribute; empty if all spheres have the
                                                       ///< same material
 

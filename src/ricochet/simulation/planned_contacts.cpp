@@ -88,7 +88,8 @@ std::vector<Vec3> PlannedContacts::bends(const ParticleSystem& system, const Sys
 
 /// Returns the support constraints of a contact. Along the normals, the member moves to the surface and, if it
 /// rebounds, away from the surface. From the impact on, friction stops a point or makes a sphere roll, within the
-/// friction limit. Friction removes a share of the slip without friction, so it is proportional to the remaining slip.
+/// friction limit. Friction removes a share of the slip that would exist without friction. So friction is proportional
+/// to the remaining slip.
 SupportConstraints PlannedContacts::held(const Flown& flown, const Contact& contact) const {
     SupportConstraints held;
     const double part = contact.time / flown.duration;

@@ -34,8 +34,8 @@ bool starts_on_surface(const CollisionScene& scene, const Particle& particle) {
     return find_first_contact(geometry, {path, 0.0}, scratch).near.starts_in_overlap();
 }
 
-/// Returns the contact of a particle with the surfaces of one frame. position: of the particle in this frame. Returns
-/// nothing if the particle touches no surface.
+/// Returns the contact of a particle with the surfaces of one frame. position: position of the particle in this frame.
+/// Returns nothing if the particle touches no surface.
 std::optional<ContactState> contact_in(const CollisionScene& scene, const CollisionWorld& of_frame,
                                        const Particle& particle, const Vec3& position) {
     ContactState contact;

@@ -76,7 +76,7 @@ struct FreeFlightForecast {
 
 /// State of every particle, in four bytes per particle, and the candidates of its next query. A scan over the states
 /// finds the active set of a step in a fraction of the time of the moves. The schedule affects only the speed of a run.
-/// If every particle were unknown, results would be bitwise the same.
+/// If the state of every particle were unknown, results would be bitwise the same.
 class QuerySchedule {
 public:
     /// clock must outlive the object.

@@ -43,8 +43,8 @@ public:
     /// Smallest work above the mean that is worth the communication: a tenth of a millisecond. Local, because only the
     /// cost depends on it.
     static constexpr double kLeastGift = 1e4;
-    /// Work per particle of a rank that it costs to insert transferred particles. A smaller excess of work waits for
-    /// more checks. Local, because only the cost depends on it.
+    /// Cost of inserting transferred particles into a rank, as work per particle of the rank. A smaller excess of work
+    /// waits for more checks. Local, because only the cost depends on it.
     static constexpr double kMoveWork = 30.0;
 
     void note(const WorkCounts& counts) { work_ += counts.work(); }
@@ -72,8 +72,8 @@ private:
 /// much work give to ranks with too little work, both in ascending order.
 [[nodiscard]] RankTransfers gifts_of(std::size_t rank, const std::vector<std::uint64_t>& work);
 
-/// Selects for each particle the rank to which it moves, or kStays. The same fraction of the particles of each cost
-/// leaves, spread evenly over the list. Idle particles stay.
+/// Selects for each particle the rank to which it moves, or kStays. The same fraction of particles leaves from each
+/// cost class, spread evenly over the list. Idle particles stay.
 class TransferChoice {
 public:
     static constexpr std::uint32_t kStays = ~std::uint32_t{0};

@@ -23,7 +23,7 @@ void RankShare::keep_together(std::vector<std::uint64_t> ids) {
     together_ = std::move(ids);
 }
 
-// Compares bit patterns, because those of positive numbers have the same order as the numbers.
+// Compares bit patterns, because the bit patterns of positive numbers have the same order as the numbers.
 double RankShare::shortest(double duration) const {
     std::array<std::uint64_t, 1> bits{std::bit_cast<std::uint64_t>(duration)};
     ranks_->least(bits);

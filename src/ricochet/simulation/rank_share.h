@@ -53,7 +53,7 @@ public:
     [[nodiscard]] bool stays(std::uint64_t id) const {
         return !together_.empty() && std::binary_search(together_.begin(), together_.end(), id);
     }
-    /// Returns true if a particle with an id lives on this rank. The result is not valid for children. A birth is
+    /// Returns true if a particle with this id lives on this rank. The result is not valid for children. A birth is
     /// tested with the id that it gets if no earlier birth of the step is refused.
     [[nodiscard]] bool has_place_for(std::uint64_t id) const {
         if (is_alone()) return true;

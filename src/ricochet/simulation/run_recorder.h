@@ -105,7 +105,7 @@ enum class RunawayCause : std::uint8_t {
 /// A particle that has exceeded kMaxSpeed.
 struct Runaway {
     std::size_t particle = 0;
-    double speed = 0.0;  ///< m/s, at that time
+    double speed = 0.0;  ///< m/s, when the particle exceeded kMaxSpeed
     RunawayCause cause = RunawayCause::forces;
 };
 

@@ -34,7 +34,7 @@ namespace ricochet {
 /// surface on the sphere. A surface with friction always supports the sphere.
 [[nodiscard]] bool holds(const ResponseRules& rules, SurfaceId surface, const Vec3& wall_impulse, const Vec3& pull);
 
-/// Limits the members that fall asleep to those that a row of pressing contacts connects to a supported member. A
+/// Limits the members that fall asleep. A row of pressing contacts must connect each of them to a supported member. A
 /// sleeping member that rested only on awake spheres would no longer press on them. is_held: flags of supported
 /// members. pressing: pairs of numbers of members that press on each other.
 void keep_supported(std::vector<std::uint8_t>& falls, const std::vector<std::uint8_t>& is_held,

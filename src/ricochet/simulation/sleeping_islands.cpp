@@ -170,8 +170,8 @@ std::vector<std::uint64_t> SleepingIslands::islands_of_sleepers(const std::vecto
     return members;
 }
 
-/// Returns one mark per sleeper. The mark is 1 for sleepers in `particles`, and for sleepers that at most `contacts`
-/// contacts in a row connect to these. must_press: true to follow only contacts under load.
+/// Returns one mark per sleeper. The mark is 1 for the sleepers in `particles`, and for all sleepers within a distance
+/// of `contacts` contacts from them. must_press: true to follow only contacts under load.
 std::vector<std::uint8_t> SleepingIslands::reached_from(const std::vector<std::uint64_t>& particles, int contacts,
                                                         bool must_press) const {
     std::vector<std::uint8_t> marks(sleepers_.size(), 0);

@@ -61,8 +61,8 @@ public:
     void join(const std::vector<ContactKey>& touching);
     /// Returns all members of the islands of the given sleepers, ascending.
     [[nodiscard]] std::vector<std::uint64_t> islands_of_sleepers(const std::vector<std::uint64_t>& sleepers) const;
-    /// Returns the sleepers among the given particles, and the sleepers that at most `contacts` contacts in a row
-    /// connect to them. Ascending.
+    /// Returns the sleepers among the given particles, and all sleepers within a distance of `contacts` contacts from
+    /// them. Ascending.
     [[nodiscard]] std::vector<std::uint64_t> around(const std::vector<std::uint64_t>& particles, int contacts) const;
     /// Returns the sleepers without a load path to a sleeper in `held`, except the sleepers in `held` themselves. A
     /// load path is a row of contacts under load. Ascending.

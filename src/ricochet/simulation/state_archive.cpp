@@ -94,7 +94,7 @@ void archive(Archive& a, const StateParts& parts) {
     parts.modules.each([&](Module& module) { module.archive(a); });
 }
 
-/// Returns the reason why no run can produce the restored state of particle i, or null if the state is valid.
+/// Returns the reason why no run can produce the restored state of particle i. Returns null for a valid state.
 const char* fault_of(const StateParts& parts, std::size_t i) {
     const Particles& p = parts.population.particles();
     const MovingColliders& moving = parts.scene.moving();

@@ -38,7 +38,7 @@ void add_settings(StateHash& hash, const auto& object, const auto& table) {
     for (const auto& line : table) std::visit(add, line.member);
 }
 
-/// Parts of a run whose state is saved, or which a restored state must match. The counts are those of the setup.
+/// Parts of a run whose state is saved, or which a restored state must match. emitters, springs: counts of the setup.
 struct StateParts {
     const SimulationOptions& options;
     const StepClock& clock;

@@ -69,7 +69,7 @@ enum class InSummary {
     apart,                ///< in another part of the summary, or not included
 };
 
-/// Rule that combines the values of the parts of a run to the value of the run.
+/// Rule that combines the values of the parts of a run into the value of the run.
 enum class OverParts { sum, largest, same };
 
 /// A line of the table.

@@ -7,7 +7,7 @@ namespace {
 
 /// Sums over the contacts of an island with surfaces.
 struct SupportList {
-    double along = 0.0;   ///< N times N s, sum of the components of contact forces along the load, times the load
+    double along = 0.0;   ///< N times N s, sum of |force . load| over the contacts
     double strong = 0.0;  ///< N, sum of the magnitudes of the contact forces
 };
 

@@ -11,7 +11,7 @@ namespace ricochet {
 
 /// A disk at rest that counts the particles whose centres pass through it. The normal points to the front side. The
 /// points of the disk belong to the front side. A centre that moves forward has therefore passed when it is exactly on
-/// the disk. A centre that moves backward has not passed yet when it is there.
+/// the disk. A centre that moves backward has not passed yet when it is exactly on the disk.
 struct CounterDescription {
     std::string name;      ///< not empty, and different from the names of other counters
     Vec3 center;           ///< m

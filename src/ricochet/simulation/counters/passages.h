@@ -1,7 +1,7 @@
 /// \file
 /// Private to the simulation: passages of particles through the disks of counters.
 ///
-/// Passages follow from the sides of a disk's plane on which the stored positions lie. A path between two stored
+/// The sides of a disk's plane on which stored positions lie determine the passages. A path between two stored
 /// positions passes the plane each time that it changes sides, alternately forward and backward. The step that ends at
 /// a stored position and the step that begins there compute the same side. Therefore no passage is lost or counted
 /// twice.

@@ -81,7 +81,7 @@ Offspring::Offspring(const Parts& parts, const OffspringLimits& limits)
                 const ParentRule& rule = *emitters[child].description().parent;
                 return rule.share && rule.on == event;
             });
-            if (shares > 1) throw InputError("two emitters share out the same parents at the same event");
+            if (shares > 1) throw InputError("two emitters divide the same parents into fragments at the same event");
         }
     }
 }

@@ -72,21 +72,22 @@ void validate_friction(const SimulationSetup& setup, const Subject& heat) {
         if (refused) heat.refuse("impact_fraction and friction_fraction", found, expected);
     };
     refuse(setup.options.response != ResponseKind::exact, name_of(setup.options.response),
-           "the response exact, which alone records what surfaces take, or both 0");
+           "the response exact, because only exact records losses at surfaces, or both 0");
     refuse(setup.options.flow != nullptr, "a flow that carries the particles",
-           "motion by forces, or both 0: what a flow carries has no energy to lose");
+           "motion by forces, or both 0: particles in a flow have no energy to lose");
     refuse(setup.options.particle_contacts.has_value(), "particle_contacts",
-           "none, or both 0: what spheres take of each other is not told apart");
+           "none, or both 0: losses between spheres cannot be separated from losses at surfaces");
     const bool act_on_each_other = !setup.springs.empty() || !setup.particles_forces.empty() || setup.solver;
     refuse(act_on_each_other, "particles that act on each other",
-           "none, or both 0: what surfaces take of them is not told apart from what they give each other");
+           "none, or both 0: energy lost to surfaces cannot be separated from energy exchanged by particles");
     refuse(!setup.bodies.empty(), "bodies that impulses move", "frames that move by their motions alone, or both 0");
     for (std::size_t k = 0; k < setup.materials.size(); ++k) {
         const Material& material = setup.materials[k];
         if (!material.wall_temperature) continue;
         Subject("material", k, material.name)
-            .refuse("wall_temperature", *material.wall_temperature,
-                    "none beside impact_fraction and friction_fraction: speeds after its impacts are the wall's");
+            .refuse(
+                "wall_temperature", *material.wall_temperature,
+                "none beside impact_fraction and friction_fraction: the wall alone determines speeds after impacts");
     }
 }
 

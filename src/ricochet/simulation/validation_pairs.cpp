@@ -101,9 +101,10 @@ void validate_joined(const SimulationSetup& setup, const Subject& subject) {
 void validate_method(const SimulationSetup& setup, const Subject& subject) {
     const bool is_pulled = !setup.springs.empty() || !setup.particles_forces.empty();
     if (!is_pulled || setup.options.particle_contacts->method != PairMethod::events) return;
-    subject.refuse("method", "events",
-                   "auto beside springs and forces between particles: they press spheres together, and nothing holds "
-                   "these where each impact is for itself");
+    subject.refuse(
+        "method", "events",
+        "auto beside springs and forces between particles: they press spheres together, and this method has no "
+        "lasting contact");
 }
 
 /// Refuses parts of a setup that exclude contacts of spheres.
@@ -111,7 +112,7 @@ void validate_company(const SimulationSetup& setup, const Subject& subject) {
     if (setup.options.response != ResponseKind::exact) {
         subject.refuse("response", name_of(setup.options.response), "exact: the others move each particle for itself");
     }
-    if (setup.options.flow) subject.refuse("motion", "a flow", "forces: what a flow carries does not meet");
+    if (setup.options.flow) subject.refuse("motion", "a flow", "forces: particles in a flow do not meet each other");
     if (setup.solver) subject.refuse("solver", "one of the program's own", "none beside spheres that meet");
     if (!setup.springs.empty() && setup.options.integrator.kind == IntegratorKind::implicit_euler) {
         subject.refuse("integrator", name_of(setup.options.integrator.kind),
@@ -124,7 +125,7 @@ void validate_company(const SimulationSetup& setup, const Subject& subject) {
                                    [](const ColliderDescription& c) { return !c.frame.empty() || is_deforming(c); });
     if (moves && kicks_first(setup.options.integrator.kind)) {
         subject.refuse("integrator", name_of(setup.options.integrator.kind),
-                       "another one where colliders move: its kick would be given twice");
+                       "another integrator if colliders move: this one would apply its kick twice");
     }
 }
 

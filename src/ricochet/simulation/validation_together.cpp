@@ -18,7 +18,7 @@ void validate_flow_walls(const SimulationSetup& setup) {
     for (std::size_t k = 0; k < setup.materials.size(); ++k) {
         if (!setup.materials[k].drives()) continue;
         Subject("material", k, setup.materials[k].name)
-            .refuse("surface_motion", "a velocity", "none: walls do not carry what a flow carries");
+            .refuse("surface_motion", "a velocity", "none: walls do not carry particles in a flow");
     }
 }
 
@@ -166,12 +166,12 @@ void validate_ranks(const SimulationSetup& setup) {
     if (!setup.particles_forces.empty()) refuse("particle_forces", "each particle pulls at all others");
     if (setup.options.particle_contacts) refuse("particle_contacts", "spheres that meet move together");
     if (!setup.counters.empty()) refuse("counters", "each process counts only its own particles");
-    if (!setup.bodies.empty()) refuse("bodies", "what all particles do to a body moves it within a step");
+    if (!setup.bodies.empty()) refuse("bodies", "the impulses of all particles move a body within a step");
     if (std::any_of(setup.emitters.begin(), setup.emitters.end(), is_cloud)) {
-        refuse("cloud", "children fly along what their parents have flown");
+        refuse("cloud", "children fly along the paths of their parents");
     }
     if (setup.options.response != ResponseKind::exact) refuse("response", "only exact moves each particle by itself");
-    if (setup.options.verify) refuse("verify", "the list of what is wrong is made in one process");
+    if (setup.options.verify) refuse("verify", "one process must collect the list of violations");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 /// \file
-/// Moving cameras: position and direction of view at a frame, and their fields in the frame's file.
+/// Position and orientation of a moving camera at a frame, and the fields of the frame's file that store them.
 #pragma once
 
 #include <optional>

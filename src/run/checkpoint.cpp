@@ -22,10 +22,10 @@
 namespace ricochet {
 namespace {
 
-/// Format number at the start of every checkpoint; the last byte changes with the layout. The file ends with its
+/// Format number at the start of every checkpoint. Its last byte is the version of the layout. The file ends with its
 /// checksum.
 constexpr std::uint64_t kCheckpointFormat = 0x5249434f43484b38ULL;
-/// Format number at the start of every checkpoint part, which also ends with its checksum.
+/// Format number at the start of every checkpoint part. The part also ends with its checksum.
 constexpr std::uint64_t kPartFormat = 0x5249434f50415230ULL;
 constexpr std::uint64_t kAnyLayout = ~std::uint64_t{0xFF};
 
@@ -47,7 +47,8 @@ void archive_checkpoint(Archive& a, Checkpoint& checkpoint) {
     archive_entries(a, loads.totals, [&](ColliderTotals& t) { a(t.hits), a(t.impulse), a(t.moment), a(t.work); });
 }
 
-/// Throws InputError unless the series refer only to files of a run, because a resumed run lists them again.
+/// Throws InputError if a series refers to anything but a file of a run. Reason: a resumed run writes the entries into
+/// its own series files.
 void require_sound_series(const Checkpoint& checkpoint) {
     const auto require = [](const std::vector<PvdEntry>& series, const auto& is_file) {
         const auto is_sound = [&](const PvdEntry& entry) { return std::isfinite(entry.time) && is_file(entry.file); };
@@ -94,8 +95,8 @@ OpenFile open_checkpoint(const std::filesystem::path& file) {
                     file.string()));
 }
 
-/// Reads like fread(), but throws if reading fails. A read error is not the end of the file: the checkpoint may be
-/// intact.
+/// Reads like fread(), but throws RunError if reading fails. A read error must not count as the end of the file,
+/// because the checkpoint may be intact.
 std::size_t read_bytes(std::span<std::byte> bytes, std::FILE* file, const std::filesystem::path& name) {
     const std::size_t count = std::fread(bytes.data(), 1, bytes.size(), file);
     if (std::ferror(file) != 0) fail_to_read(name);
@@ -115,7 +116,8 @@ std::uint64_t require_whole_file(std::FILE* file, const std::filesystem::path& n
     }
     StateHash checksum;
     checksum.add(std::as_bytes(std::span(&format, 1)));
-    // The last eight bytes can be the checksum, so they are never added to it.
+    // The last eight bytes read so far can be the stored checksum. They are added to the computed checksum only after
+    // more bytes follow.
     std::vector<std::byte> piece(sizeof(std::uint64_t) + (std::size_t{1} << 16));
     std::size_t kept = 0;
     while (const std::size_t got = read_bytes(std::span(piece).subspan(kept), file, name)) {
@@ -159,7 +161,8 @@ void read_part(const std::filesystem::path& folder, const CheckpointPart& part, 
     const auto refuse_part = [&](const std::string& why) {
         throw InputError(fmt::format("its part {} {}", part.file, why));
     };
-    // The name comes from a file, so only checkpoint parts beside the checkpoint are opened.
+    // The name comes from a file that can be damaged. It must be the name of a checkpoint part in the checkpoint's
+    // folder.
     if (!set_of_checkpoint_part(part.file)) refuse_part("is no part of a checkpoint");
     const std::filesystem::path file = folder / part.file;
     require_own_file(file);

@@ -22,8 +22,8 @@ void CsvFile::begin_field() {
     is_in_row_ = true;
 }
 
-// Writes the shortest text that reads back as the same double. Whole numbers get a decimal point, so that readers do
-// not parse the column as integers, which have no -0.
+// Writes the shortest text that reads back as the same double. Whole numbers get a decimal point. Otherwise readers
+// would parse the column as integers and lose the sign of -0.
 void CsvFile::add(double value) {
     begin_field();
     const std::size_t begin = text_.size();

@@ -32,7 +32,7 @@ public:
     void skip(int fields);
     /// Ends the row. Throws RunError if writing fails.
     void end_row();
-    /// Gives the file its name. Call it once, at the end. Throws RunError if that fails.
+    /// Renames the complete file to its final name. Call it once, at the end. Throws RunError if renaming fails.
     void commit();
 
 private:

@@ -83,7 +83,7 @@ void WriterThread::work() {
         } catch (...) {
             error = std::current_exception();
         }
-        job = nullptr;  // releases the captured frame without the lock, before other threads learn of the free space
+        job = nullptr;  // releases the captured frame before the lock is taken and the queue slot is freed
         lock.lock();
         jobs_.pop_front();
         error_ = error;
@@ -96,15 +96,15 @@ void WriterThread::work() {
 
 namespace {
 
-// Number of frames up to which the series file is rewritten after each frame. Afterwards it is rewritten when the new
-// frames have as many bytes as the series file, so that its cost never dominates.
+// Number of frames up to which the series file is rewritten after each frame. A longer series file is rewritten only
+// after new frames with as many bytes as the series file itself. The cost of rewriting therefore never dominates.
 constexpr std::size_t kAlwaysListed = 1000;
 
 }  // namespace
 
-/// Files of a series and their list.
-/// The writer's thread uses it; other threads use it only while that thread has no job. A mutex protects the frames
-/// that are reused.
+/// Frame files of a series and the series file that lists them.
+/// The writer thread uses this object. Other threads use it only while the writer thread has no job. A mutex protects
+/// the frames that are reused.
 class FrameWriter::Series {
 public:
     Series(std::filesystem::path folder, FileSeries files, std::vector<PvdEntry> earlier)
@@ -123,7 +123,8 @@ public:
         list(time, name, text.size());
     }
 
-    // A checkpoint refers to the frames in the list, so the list must be complete before the checkpoint is written.
+    // A checkpoint refers to the frames in the series file. The series file must therefore be complete before the
+    // checkpoint is written.
     const std::vector<PvdEntry>& bring_up_to_date() {
         if (listed_ != entries_.size()) write_list();
         return entries_;
@@ -158,7 +159,7 @@ private:
     FileSeries files_;
     std::vector<PvdEntry> entries_;
     std::uint64_t bytes_since_list_ = 0;
-    std::size_t listed_ = 0;  // entries that are in the series file
+    std::size_t listed_ = 0;  // number of entries that are in the series file
     std::mutex mutex_;
     bool keeps_frames_ = false;         // true after the first blank_frame()
     std::vector<VtkPolyData> written_;  // frames to be reused
@@ -232,10 +233,10 @@ ContactColumns no_rows(const Simulation& simulation) {
 
 namespace {
 
-/// Collider number of rows without a collider.
+/// Collider number in the rows of pair impacts, which have no collider.
 constexpr std::uint32_t kNoCollider = 0xFFFFFFFFU;
 
-/// Entry of one of the two lists of a step.
+/// Index of an entry in one of the two lists of a step: surface contacts or pair impacts.
 struct LogRow {
     std::size_t number = 0;
     bool is_pair = false;

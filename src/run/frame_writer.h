@@ -59,20 +59,20 @@ private:
     std::thread thread_;
 };
 
-/// Writes frames in the given order and keeps the series file up to date. A run that is killed at any moment can
-/// therefore still be opened.
+/// Writes frames in the given order and keeps the series file up to date. The output of a run can therefore be opened
+/// even if the run is killed.
 /// The limit on frames in memory applies to all series that share a thread. At most WriterThread::kMostInFlight frames
 /// are in memory; submit() and blank_frame() wait when the limit is reached.
 class FrameWriter {
 public:
     /// earlier: frames of the interrupted run that continues here.
-    /// thread: thread of another series that this one shares; null creates a new thread.
+    /// thread: writer thread to share with another series; null creates a new thread.
     explicit FrameWriter(std::filesystem::path folder, FileSeries files = kParticleSeries,
                          std::vector<PvdEntry> earlier = {}, std::shared_ptr<WriterThread> thread = nullptr);
 
     /// Returns a frame to be filled, as soon as the queue has space for it. The frame may reuse the memory of a written
-    /// frame and still contain its data. Otherwise it is empty. Waiting before the frame is filled keeps at most two
-    /// frames in memory. Throws like submit().
+    /// frame and still contain its data. Otherwise it is empty. The wait comes before the frame is filled, so that at
+    /// most two frames are in memory. Throws like submit().
     [[nodiscard]] VtkPolyData blank_frame();
     /// Submits a frame. Rethrows the exception of an earlier write.
     void submit(std::uint64_t step, VtkPolyData frame);
@@ -102,7 +102,7 @@ struct ContactColumns {
     std::vector<double> time;            ///< s
     std::vector<std::int64_t> particle;  ///< id
     std::vector<std::uint32_t> collider;
-    std::vector<std::int64_t> triangle;  ///< index in the collider's mesh; -1 for planes, balls and cylinders
+    std::vector<std::int64_t> triangle;  ///< index in the collider's mesh; -1 for shapes without triangles
     std::vector<Vec3> barycentric;       ///< weights of the triangle's corners; zero if there is no triangle
     std::vector<Vec3> normal;            ///< unit, from the surface to the particle
     std::vector<Vec3> velocity_before;   ///< m/s
@@ -126,12 +126,12 @@ struct ContactColumns {
 /// Simulation::contact_records().
 class ContactLog {
 public:
-    /// Number of rows (about 100 MB) that triggers a file even between two frames.
-    /// At most three times as many rows are in memory, including the files being written, plus the rows of the current
-    /// step.
+    /// Number of rows (about 100 MB) at which a file is written even between two frames.
+    /// Memory contains at most three times this number of rows, including files being written, plus the rows of the
+    /// current step.
     static constexpr std::size_t kMostRows = std::size_t{1} << 19;
 
-    /// The simulation must record its contacts (SimulationOptions::record_contacts); its steps from now on are logged.
+    /// Logs the steps after this call. The simulation must record its contacts (SimulationOptions::record_contacts).
     /// earlier: files of the interrupted run that continues here. thread: see FrameWriter.
     ContactLog(const std::filesystem::path& folder, const Simulation& simulation, std::size_t most_rows = kMostRows,
                std::vector<PvdEntry> earlier = {}, std::shared_ptr<WriterThread> thread = nullptr);
@@ -139,7 +139,7 @@ public:
     /// Appends the rows of the last step. Call it after every step; a second call for one step has no effect. Throws
     /// std::logic_error if a step was left out, and rethrows the exception of an earlier write.
     void add_step(const Simulation& simulation);
-    /// Writes the rows since the previous file, even if there are none. Throws like add_step().
+    /// Writes a file with the rows since the previous file, even if there are none. Throws like add_step().
     void write(const Simulation& simulation);
     /// Waits until all files so far are on disk, and returns the whole series. Rethrows the exception of a failed
     /// write.

@@ -10,16 +10,17 @@
 
 namespace ricochet {
 
-/// Rows of colliders.csv and bodies.csv so far, and the start of the next rows; part of a checkpoint.
+/// Rows of colliders.csv and bodies.csv so far, and the state at the start of the next rows' interval. Stored in
+/// checkpoints.
 struct LoadRows {
     std::string colliders;               ///< lines of text, without the header
     std::string bodies;                  ///< lines of text, without the header
-    double since = 0.0;                  ///< time of the last rows, in s
+    double since = 0.0;                  ///< time of the last rows, in s; the next rows cover the interval from here
     std::vector<ColliderTotals> totals;  ///< totals at the time `since`
 };
 
-/// Builds one row for each collider and each body at every output time. Only colliders that move, or whose material
-/// moves, have rows.
+/// Tables with one row for each collider and each body at every output time. A collider has rows only if it moves or
+/// its material moves.
 class LoadTables {
 public:
     /// rows: rows of the interrupted run that continues here.

@@ -20,8 +20,8 @@ inline constexpr const char* kParticleMeshFile = "particle_mesh.obj";      ///< 
 
 /// Copies the files of a drawing into a run's folder and makes the drawing refer to the copies. Meshes become OBJ
 /// files.
-/// number: index of one of the scene's drawings, counted from 1, which becomes part of the names; 0 for the picture
-/// itself.
+/// number: part of the names of the copies. It is 0 for the picture itself, and k for the k-th drawing of the scene,
+/// counted from 1.
 /// Throws InputError if a file cannot be read, RunError if writing fails.
 void keep_picture_files(const std::filesystem::path& folder, ParticleDrawingDescription& drawing,
                         std::size_t number = 0);

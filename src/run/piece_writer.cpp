@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace {
 
-/// Returns the frame's time and its arrays without values.
+/// Returns a frame with the same time and the same arrays, but without values.
 VtkPolyData shape_of(const VtkPolyData& frame) {
     VtkPolyData shape;
     shape.time = frame.time;

@@ -17,7 +17,7 @@
 
 namespace ricochet {
 
-/// Writes pieces on a thread of its own; the next call rethrows an exception of that thread.
+/// Writer of pieces on a separate thread. The next call rethrows an exception of that thread.
 /// All processes of a run must make the same calls.
 class PieceWriter {
 public:
@@ -27,8 +27,8 @@ public:
 
     /// Submits the particles of this process as a piece of a frame. The previous frame must be complete().
     void write(const Simulation& simulation);
-    /// Waits until the pieces of all processes are on disk. Returns the index that the first process writes. Returns
-    /// nothing if complete() was already called since the last write().
+    /// Waits until the pieces of all processes are on disk. Returns the content of the frame's index file, which the
+    /// first process writes. Returns nothing if complete() was already called since the last write().
     [[nodiscard]] std::optional<PieceIndex> complete();
     /// Writes the particles of this process as a part of a checkpoint. The parts of the previous checkpoint stay
     /// intact. Returns the parts of all processes on the first process. Only for runs with several processes.

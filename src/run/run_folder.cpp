@@ -75,7 +75,7 @@ bool is_comparison_file(std::string_view name) {
            std::find(kComparisonPictures.begin(), kComparisonPictures.end(), name) != kComparisonPictures.end();
 }
 
-// Parses N_pK.
+// Parses the step N and the process K from N_pK.
 std::optional<std::pair<std::uint64_t, std::uint64_t>> numbers_of_part(std::optional<std::string_view> stem) {
     const std::size_t mark = stem ? stem->find(kPieceMark) : std::string_view::npos;
     if (mark == std::string_view::npos) return std::nullopt;
@@ -199,7 +199,8 @@ int open_marker(const std::filesystem::path& folder) {
     constexpr int kFlags = O_RDWR | O_CLOEXEC | O_NOFOLLOW;
     int descriptor = ::open(marker.c_str(), kFlags);
     if (descriptor < 0 && errno == ENOENT) {
-        // The folder may be non-empty because another run has just created its marker, so the marker is opened again.
+        // The folder may be non-empty only because another run has just created its marker. The marker is therefore
+        // opened again.
         descriptor = ::open(marker.c_str(), is_empty_folder(folder) ? kFlags | O_CREAT : kFlags, 0644);
         if (descriptor < 0 && errno == ENOENT) {
             throw InputError(fmt::format(
@@ -213,7 +214,7 @@ int open_marker(const std::filesystem::path& folder) {
 bool holds_other_text(int descriptor) {
     std::array<char, kMarkerText.size()> start{};
     const ssize_t count = ::pread(descriptor, start.data(), start.size(), 0);
-    if (count <= 0) return count < 0;  // another process is still writing an empty marker
+    if (count <= 0) return count < 0;  // an empty marker is accepted, because another process may still be writing it
     const std::string_view read{start.data(), static_cast<std::size_t>(count)};
     return !kMarkerText.starts_with(read);
 }
@@ -318,7 +319,7 @@ void require_own_file(const std::filesystem::path& file) {
 
 namespace {
 
-/// Checks the picture files that run.json names, and all files found by their names.
+/// Calls require_own_file() for the picture files in run.json and for all frames, contact files and collider files.
 void require_own_files(const std::filesystem::path& path, const RunFolder& folder) {
     std::vector<ParticleDrawingDescription> drawings = folder.info.drawings;
     if (folder.info.picture) drawings.push_back(*folder.info.picture);
@@ -380,7 +381,7 @@ bool are_behind(const RunFolder& folder, double time) {
     if (folder.frames.empty() || folder.frames.back().step == 0) return false;
     // The last step of a run can be shorter than the time step.
     const auto steps = static_cast<double>(folder.frames.back().step - 1);
-    // Local: rounding of the product.
+    // Local: bounds the rounding error of the product of steps and time step.
     constexpr double kRounding = 1e-9;
     return time < (1.0 - kRounding) * steps * folder.info.time_step;
 }

@@ -15,10 +15,11 @@
 
 namespace ricochet {
 
-inline constexpr const char* kRunMarkerFile = ".ricochet-run";    ///< marks the folder as a run's own
+inline constexpr const char* kRunMarkerFile = ".ricochet-run";    ///< marks the folder as the output folder of a run
 inline constexpr const char* kRunInfoFile = "run.json";           ///< description of the run, written at the start
 inline constexpr const char* kSummaryFile = "summary.json";       ///< results, written at the end
-inline constexpr const char* kCheckpointFile = "checkpoint.bin";  ///< state of an interrupted run, for --resume
+inline constexpr const char* kCheckpointFile = "checkpoint.bin";  ///< state from which --resume continues an
+                                                                  ///< interrupted run
 inline constexpr const char* kExtensionFile =
     "extension.bin";  ///< state of a finished run, from which it can continue to a later time
 inline constexpr const char* kParticleSeriesFile = "particles.pvd";
@@ -31,8 +32,9 @@ inline constexpr const char* kBodyTableFile = "bodies.csv";         ///< motion 
 inline constexpr const char* kComparisonJsonFile = "compare.json";   ///< all results of a comparison
 inline constexpr const char* kComparisonTableFile = "compare.csv";   ///< one line for each response and time step
 inline constexpr const char* kComparisonScriptFile = "compare.gp";   ///< gnuplot script that draws the pictures
-inline constexpr const char* kComparisonPointsFile = "compare.dat";  ///< data of the script
-inline constexpr const char* kComparisonEnergyFile = "compare_energy.dat";  ///< energy errors over time, for the script
+inline constexpr const char* kComparisonPointsFile = "compare.dat";  ///< data that the script plots
+inline constexpr const char* kComparisonEnergyFile = "compare_energy.dat";  ///< energy errors over time that the script
+                                                                            ///< plots
 inline constexpr const char* kComparisonMarkdownFile = "report.md";
 inline constexpr const char* kComparisonHtmlFile = "report.html";
 /// Pictures drawn by the script.
@@ -68,7 +70,7 @@ inline constexpr std::array<const char*, 6> kComparisonPictures{
 /// Returns the step in the name of a file of moving colliders, or nothing for other names.
 [[nodiscard]] std::optional<std::uint64_t> step_of_moving_file(std::string_view name);
 
-/// Files of consecutive times, and the file that lists them.
+/// Names of a series of files, one file per output time, and the name of the file that lists them.
 struct FileSeries {
     std::string (*file_name)(std::uint64_t step);
     const char* list;
@@ -78,7 +80,7 @@ inline constexpr FileSeries kContactSeries{&contact_file_name, kContactSeriesFil
 inline constexpr FileSeries kMovingSeries{&moving_file_name, kMovingSeriesFile};
 
 /// Returns at most 80 characters of a name, with '_' instead of characters other than letters, digits, '-' and '_'.
-/// All programs accept the result as a file name.
+/// The result is a valid file name on all systems.
 [[nodiscard]] std::string plain_file_name(std::string_view name);
 
 /// Returns collider_NN_name.vtp, with the name converted by plain_file_name().
@@ -91,13 +93,14 @@ inline constexpr FileSeries kMovingSeries{&moving_file_name, kMovingSeriesFile};
 [[nodiscard]] bool is_run_file(std::string_view name);
 
 /// Output folder of one run, locked against other runs.
-/// The folder must be new, empty, or carry the marker of an earlier run. Only files of that run are removed
-/// (is_run_file()). The folder is locked for the lifetime of this object; the lock ends with the process in any case.
+/// The folder must be new, empty, or carry the marker of an earlier run. Only files of that earlier run are removed
+/// (is_run_file()). The folder is locked for the lifetime of this object. If the process is killed, the system releases
+/// the lock.
 class OutputDirectory {
 public:
     /// Creates the folder and missing parents, marks and locks it, and removes the files of an earlier run.
-    /// Throws InputError if the folder contains other files or the path is not a folder. Throws RunError if another
-    /// run uses it or the system refuses.
+    /// Throws InputError if the folder contains other files or the path is not a folder. Throws RunError if another run
+    /// uses the folder or the operating system refuses.
     explicit OutputDirectory(std::filesystem::path path) : OutputDirectory(std::move(path), Earlier::remove) {}
     /// Treatment of an earlier run's files.
     /// - remove: deletes them.
@@ -110,13 +113,13 @@ public:
     OutputDirectory& operator=(const OutputDirectory&) = delete;
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-    /// Allows other processes to join. The folder stays locked while any of them lives. Throws RunError if another run
-    /// takes the folder in the same moment.
+    /// Allows other processes to join. The folder stays locked while any of these processes lives. Throws RunError if
+    /// another run locks the folder at the same moment.
     void share() const;
     /// Removes all parts of checkpoints except the given names.
     void remove_checkpoint_parts(const std::vector<std::string>& kept = {}) const;
-    /// Removes frames and contact files of later steps, and unfinished files, because an interrupted run continues at
-    /// this step.
+    /// Removes unfinished files, and frames and contact files of later steps. An interrupted run then continues at this
+    /// step.
     void remove_after(std::uint64_t step) const;
 
 private:
@@ -139,15 +142,16 @@ struct RunFolder {
     std::vector<FrameFile> contacts{};             ///< files of the contact log, ordered by step
 };
 
-/// Throws InputError unless a file of a run's folder is a regular file in that folder. Accepts missing files.
+/// Throws InputError if a file of a run's folder is not a regular file, or is a link to another folder. Accepts missing
+/// files.
 /// Reason: a folder from an untrusted source can contain links to other folders, and pipes that block.
 void require_own_file(const std::filesystem::path& file);
 
-/// Lists a run's folder; the run can still be in progress, or have been interrupted. Throws InputError if the folder
-/// is missing or has no frame, or if a file leads out of it (require_own_file()).
+/// Lists the files in a run's folder. The run can be in progress or interrupted. Throws InputError if the folder is
+/// missing or has no frame, or if require_own_file() refuses a file.
 [[nodiscard]] RunFolder open_run_folder(const std::filesystem::path& path);
 
-/// Returns true if a collider's totals are older than the last frame, because the run was killed.
+/// Returns true if a collider's totals end before the last frame, as happens if the run was killed.
 /// time: end of the totals, in s.
 [[nodiscard]] bool are_behind(const RunFolder& folder, double time);
 

@@ -155,7 +155,8 @@ RunInfo run_info_of(const Json& json) {
     return info;
 }
 
-// Returns the axis most opposed to the uniform forces, or z without such forces.
+// Returns the unit vector along a coordinate axis, with sign, that points most against the uniform forces. Returns +z
+// without such forces.
 Vec3 upward_axis(const SimulationSetup& setup) {
     const Vec3 fall = uniform_acceleration(setup);
     Vec3 up{0, 0, 1};
@@ -219,7 +220,7 @@ RunInfo read_run_info(const std::filesystem::path& path) {
     try {
         return run_info_of(Json::parse(text));
     } catch (const std::bad_alloc&) {
-        throw;  // not a fault of the file
+        throw;  // being out of memory is not a fault of the file
     } catch (const std::exception& error) {
         throw InputError(fmt::format("{}: not the run.json of a ricochet run ({}); run the scene again", path.string(),
                                      error.what()));
@@ -230,7 +231,7 @@ RunInfo read_run_info(const std::filesystem::path& path) {
 
 namespace {
 
-/// Returns null if the surfaces received no impulse.
+/// Returns the share of impacts in the impulses, or null if the surfaces received no impulse.
 Json share_of(const ImpulseSizes& sizes) { return sizes.any() ? Json(sizes.share_of_impacts()) : Json(nullptr); }
 
 Json json_of(const CounterTotals& counter) {
@@ -369,7 +370,8 @@ std::string summary_text(const RunSummary& summary) {
     for (const ColliderSummary& collider : summary.colliders) json["colliders"].push_back(json_of(collider));
     for (const BodyState& body : summary.bodies) json["bodies"].push_back(json_of(body));
     for (const CounterTotals& counter : summary.counters) json["counters"].push_back(json_of(counter));
-    // Names come from files and can contain invalid UTF-8. Such bytes are replaced, so that the summary is never lost.
+    // Names come from files and can contain invalid UTF-8. Such bytes are replaced, because an exception would lose the
+    // summary.
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

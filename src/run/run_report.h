@@ -24,7 +24,7 @@ struct ColliderInfo {
     std::string type;            ///< see type_name()
     std::string file;            ///< file name in the run's folder
     std::uint32_t material = 0;  ///< index of its material
-    bool moves = false;          ///< its file has coordinates of its reference frame
+    bool moves = false;          ///< a moving collider's file has coordinates of its reference frame
     ColliderLooks looks{};       ///< appearance in pictures
 };
 
@@ -45,7 +45,7 @@ struct RunInfo {
 
     std::string version;                      ///< version of ricochet
     std::string scene;                        ///< name of the scene file, as given by the user
-    Vec3 up{0, 0, 1};                         ///< axis nearest to the direction against gravity
+    Vec3 up{0, 0, 1};                         ///< coordinate axis that points most against gravity
     double time_step = 0.0;                   ///< s; 0: unknown
     std::optional<CameraDescription> camera;  ///< its `up` equals the member `up`
     std::optional<PictureDescription> picture;
@@ -96,7 +96,7 @@ struct RunSummary {
     std::uint64_t particles_alive = 0;
     SimulationStatistics statistics;
     bool spheres_meet = false;               ///< true if spheres collide with each other
-    bool verified = false;                   ///< true for a run with --verify, which alone knows the violations
+    bool verified = false;                   ///< true for a run with --verify; other runs do not count violations
     double kinetic_energy = 0.0;             ///< J
     std::optional<double> potential_energy;  ///< J; nothing if a force has no potential
     std::uint64_t state_hash = 0;
@@ -105,11 +105,11 @@ struct RunSummary {
     std::vector<BodyState> bodies;        ///< final states of the dynamic bodies
     std::vector<CounterTotals> counters;  ///< in the order of the scene
 
-    /// Returns the sum over all colliders.
+    /// Returns the sum of `sizes` over all colliders.
     [[nodiscard]] ImpulseSizes impulse_sizes() const;
 };
 
-/// Returns the part of the summary that the simulation knows; the names of the colliders' files stay empty.
+/// Returns a summary with the values that the simulation knows. The names of the colliders' files stay empty.
 /// groups: triangle groups of the colliders, in order; missing entries mean no groups.
 [[nodiscard]] RunSummary summarize(const Simulation& simulation, const std::vector<TriangleGroups>& groups = {});
 /// Returns the JSON text of summary.json. Numbers that are not finite become null.
@@ -117,8 +117,8 @@ struct RunSummary {
 
 /// Writes a header line and one line for each particle, in the order of the ids.
 /// Columns: id, x, y, z, vx, vy, vz, radius, mass, age, contacts, resting, unsimulated_time, spin_x, spin_y, spin_z,
-/// lifetime, then the attributes (vectors as name_x, name_y, name_z). Numbers have 17 significant digits, so that they
-/// read back to the same bits.
+/// lifetime, then the attributes (vectors as name_x, name_y, name_z). Numbers have 17 significant digits, so that
+/// reading them gives the same bits.
 /// time: simulation time, in s.
 /// Throws RunError or InputError like AtomicFile; an incomplete file never appears.
 void write_state_csv(const std::filesystem::path& path, const Particles& particles, double time);

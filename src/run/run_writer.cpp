@@ -19,7 +19,7 @@
 namespace ricochet {
 namespace {
 
-/// Adds its lifetime, in s, to a sum.
+/// Timer that adds its own lifetime, in s, to a sum.
 class SecondsTo {
 public:
     explicit SecondsTo(double& sum) : sum_(sum) {}

@@ -17,31 +17,32 @@
 
 namespace ricochet {
 
-/// Returns the box of the particles' starts, emitters and bounds. A picture of a scene without meshes should show it.
+/// Returns the bounding box of the initial particles, the emitters and the scene's bounds. Pictures of a scene without
+/// meshes should show this box.
 [[nodiscard]] Box3 particle_region(const SimulationSetup& setup);
 
-/// Returns the box of all colliders except planes, at their current positions.
+/// Returns the bounding box of all colliders except planes, at their current positions.
 [[nodiscard]] Box3 collider_region(const Simulation& simulation);
 
-/// Writes the series files for a resumed run with only the files that it keeps. Call it before other files are
-/// removed.
+/// Rewrites the series files of a resumed run. They then list only the files that the run keeps. Call it before the
+/// other files are removed.
 void list_kept_files(const std::filesystem::path& folder, const Checkpoint& checkpoint);
 
 /// Fills a frame of the run with the simulation's particles, the springs between them, and a moving camera.
 void fill_run_frame(VtkPolyData& frame, const RunInfo& info, const Simulation& simulation);
 
-/// Frame whose pieces are on disk; see PieceWriter.
+/// Content of the index file of a frame whose pieces are on disk; see PieceWriter.
 struct PieceIndex {
     std::uint64_t step = 0;
     VtkPolyData shape{};               ///< time and arrays, without values
     std::vector<std::string> files{};  ///< names of the pieces
 };
 
-/// Writes a run: first run.json and the colliders, then frames, finally the summary and the colliders with their
-/// totals.
-/// The files on disk can be opened at any moment, however the run ends. A separate thread writes frames and contact
-/// files. At most two of them are in memory; then the simulation waits. The next call rethrows an exception of that
-/// thread.
+/// Writer of a run. It writes first run.json and the colliders, then frames, finally the summary and the colliders with
+/// their totals.
+/// The files on disk can be opened at any moment, even if the run is killed. A separate thread writes frames and
+/// contact files. At most two of these files are in memory; the simulation waits at this limit. The next call rethrows
+/// an exception of that thread.
 class RunWriter {
 public:
     /// folder: path of an OutputDirectory, which must outlive the writer.
@@ -59,21 +60,21 @@ public:
     void list(const PieceIndex& index);
 
     /// Logs the contacts of a step if the simulation records them. Call it after every step.
-    /// Throws like ContactLog::add_step(). Rethrows the exception of an earlier write, so that a run without disk
-    /// space ends soon.
+    /// Throws like ContactLog::add_step(). Rethrows the exception of an earlier write, so that a run ends soon after
+    /// the disk is full.
     void add_step(const Simulation& simulation);
     /// Submits the current state as a frame, with the contacts since the previous frame if the simulation records
     /// them. Rethrows the exception of an earlier write.
     void write_frame(const Simulation& simulation);
-    /// Writes a checkpoint of the current state and waits until all files that it refers to are on disk. The state
-    /// must already be a frame (write_frame()).
+    /// Writes a checkpoint of the current state and waits until all files that it refers to are on disk. Call
+    /// write_frame() for the same state before.
     /// scene: fingerprint of the scene. wall_seconds: time spent so far. parts: files of the particles, if the
-    /// simulation's own state excludes them.
+    /// simulation's state does not contain the particles.
     /// Throws like write_frame().
     void write_checkpoint(const Simulation& simulation, std::uint64_t scene, double wall_seconds,
                           std::vector<CheckpointPart> parts = {});
-    /// Turns the last checkpoint, if any, into the file from which a finished run can be extended. Throws RunError if
-    /// the system refuses.
+    /// Renames the last checkpoint, if any, to the file from which a finished run can be extended. Throws RunError if
+    /// renaming fails.
     void keep_checkpoint_for_extension() const;
     /// Writes the current state if it is not yet a frame, waits for all frames, and writes the colliders' totals.
     /// Returns the summary without version, scene, threads, seconds and interrupted, which only the caller knows.

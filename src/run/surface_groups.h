@@ -23,7 +23,7 @@ inline constexpr const char* kGroupNames = "group_names";
 inline constexpr const char* kMaterialNames = "material_names";
 inline constexpr const char* kNote = "note";
 
-/// Name of materials without a name; colliders that name no material use it.
+/// Name written for materials without a name, such as the material of colliders that name none.
 inline constexpr const char* kDefaultMaterial = "default";
 
 /// Totals of the triangles of one group.
@@ -39,7 +39,8 @@ struct GroupTotals {
 /// if the mesh has no groups or the simulation records no totals.
 [[nodiscard]] std::vector<GroupTotals> totals_by_group(const TriangleGroups& groups, const TriangleTotals& totals);
 
-/// Impulses on surfaces by origin, in N s: sums over triangles of the magnitude of each triangle's total.
+/// Impulses on surfaces, in N s, separated into impacts and lasting contact. Each member sums the magnitudes of the
+/// triangles' total impulses.
 struct ImpulseSizes {
     double of_impacts = 0.0;
     double lasting = 0.0;  ///< not due to impacts
@@ -52,13 +53,13 @@ struct ImpulseSizes {
     void add(const ImpulseSizes& other) { of_impacts += other.of_impacts, lasting += other.lasting; }
     /// Returns true if surfaces received any impulse.
     [[nodiscard]] bool any() const { return of_impacts + lasting > 0.0; }
-    /// Returns the share of impacts, from 0 to 1. Requires any().
+    /// Returns the share of impacts in both sums, from 0 to 1. Requires any().
     [[nodiscard]] double share_of_impacts() const { return of_impacts / (of_impacts + lasting); }
 };
 
 /// Adds the group number and the material number of each triangle to a collider's file, with their names as texts.
-/// A mesh without groups gets no groups. A note is added if the totals include lasting contact, which hits do not
-/// count.
+/// A mesh without groups gets no groups. Adds a note if the totals include lasting contact, because hits count only
+/// impacts.
 void add_surfaces(VtkPolyData& frame, const ColliderDescription& collider, std::span<const Material> materials,
                   const TriangleGroups& groups, const TriangleTotals& totals);
 

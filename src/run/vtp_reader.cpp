@@ -237,7 +237,7 @@ public:
         refuse(path_, fmt::format("array {} has type {} and {} components", array.name, array.type, array.components));
     }
 
-    /// Returns integers that are indices of points or ends of cells.
+    /// Reads indices of points, or the end offsets of cells, from 64-bit or 32-bit integers.
     std::vector<std::int64_t> indices(const ArrayHeader& array, std::uint64_t count) {
         if (array.type == "Int64") return read<std::int64_t>(array, count);
         if (array.type != "Int32") refuse(path_, fmt::format("{} has type {}", array.name, array.type));
@@ -267,7 +267,8 @@ private:
     std::filesystem::path path_;
     FileBytes& file_;
     std::uint64_t data_start_;
-    std::uint64_t read_ = 0;  // bytes of all arrays so far; limited, because overlapping arrays could fill memory
+    std::uint64_t read_ = 0;  // total bytes of all arrays so far; limited, because arrays that share bytes could fill
+                              // memory
 };
 
 const ArrayHeader& only_array(const std::filesystem::path& path, const Header& header, std::string_view section,

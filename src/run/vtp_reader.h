@@ -8,9 +8,8 @@
 
 namespace ricochet {
 
-/// Reads a .vtp file in the layout of write_vtp(); other dialects of the format are refused. Allocations never exceed
-/// the file's size by more than a constant factor. Throws InputError with the file's name, the byte and the expected
-/// content.
+/// Reads a .vtp file in the layout of write_vtp(); other layouts of the format are refused. Allocated memory is at most
+/// a constant multiple of the file's size. Throws InputError with the file's name, the byte and the expected content.
 [[nodiscard]] VtkPolyData read_vtp(const std::filesystem::path& path);
 
 }  // namespace ricochet

@@ -19,26 +19,27 @@ namespace ricochet {
 /// Report that `ricochet info` shows.
 struct MeshReport {
     std::string format;
-    std::size_t vertices = 0;              ///< in the file, used or not
-    std::size_t faces = 0;                 ///< as listed in the file
-    std::size_t triangles = 0;             ///< of the collision mesh
-    Box3 bounds;                           ///< of the triangles, in m
+    std::size_t vertices = 0;              ///< number of vertices in the file, including unused ones
+    std::size_t faces = 0;                 ///< number of faces in the file
+    std::size_t triangles = 0;             ///< number of triangles of the collision mesh
+    Box3 bounds;                           ///< box of the triangles, in m
     double area = 0.0;                     ///< in m^2
     std::optional<double> volume;          ///< enclosed volume, in m^3, not negative; nullopt for an open surface
-    bool wound_inward = false;             ///< closed, and the faces' normals point inward
-    TopologyReport topology;               ///< of the collision mesh, with equal positions joined
-    std::size_t joined_vertices = 0;       ///< used vertices that repeat an earlier position, joined for the topology
-    std::size_t shells_nested_alike = 0;   ///< consistent winding only: shells within others of the same winding
-    std::size_t duplicate_faces = 0;       ///< faces with the same vertices as an earlier one
-    std::size_t degenerate_triangles = 0;  ///< exactly without area
+    bool wound_inward = false;             ///< true if the mesh is closed and its normals point inward
+    TopologyReport topology;               ///< topology of the collision mesh; vertices at equal positions are joined
+    std::size_t joined_vertices = 0;       ///< number of used vertices that were joined with an earlier one
+    std::size_t shells_nested_alike = 0;   ///< shells within others of the same winding; 0 if the winding is
+                                           ///< inconsistent
+    std::size_t duplicate_faces = 0;       ///< number of faces with the same vertices as an earlier face
+    std::size_t degenerate_triangles = 0;  ///< number of triangles whose area is exactly zero
     std::size_t faces_with_repeated_corners = 0;
-    std::size_t crossing_faces = 0;      ///< polygons whose outline crosses itself
-    std::size_t self_intersections = 0;  ///< pairs of triangles that touch or cross, with equal positions joined
+    std::size_t crossing_faces = 0;      ///< number of polygons whose outline crosses itself
+    std::size_t self_intersections = 0;  ///< number of pairs of triangles that touch or cross
     bool self_intersections_are_all = true;
     std::optional<WeldReport> weld;     ///< STL and glTF only
-    bool y_up = false;                  ///< the file has y up; the bounds have z up
-    std::vector<NamedTriangles> names;  ///< names of faces
-    std::vector<std::string> notes;     ///< notes on content that was not read
+    bool y_up = false;                  ///< true if the file has y up; the bounds always have z up
+    std::vector<NamedTriangles> names;  ///< named groups of triangles
+    std::vector<std::string> notes;     ///< notes on content of the file that was not read
     std::vector<std::string> warnings;  ///< one sentence per kind of defect, with its effect on leaks
 };
 

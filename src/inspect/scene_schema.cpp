@@ -20,7 +20,8 @@ using detail::ValueType;
 using detail::Variant;
 using Json = nlohmann::ordered_json;
 
-// Writes whole numbers without a fraction. 2^64 stands for the largest seed, 2^64 - 1.
+// Returns a bound of a range as JSON; whole numbers become integers. The value 2^64 stands for the largest seed, 2^64 -
+// 1.
 Json bound(double value) {
     if (value == 0x1p64) return std::numeric_limits<std::uint64_t>::max();
     if (value >= 0.0 && value < 0x1p53 && value == std::floor(value)) return static_cast<std::uint64_t>(value);
@@ -320,7 +321,7 @@ std::string default_words(const KeySpec& key) {
     return key.without.empty() ? "" : std::string(key.without);
 }
 
-// Escapes vertical bars, because they would end a table cell.
+// Escapes vertical bars in the text of a table cell, because a bar would end the cell.
 std::string cell(const std::string& text) {
     std::string result;
     for (const char c : text) result += c == '|' ? std::string("\\|") : std::string(1, c);
@@ -362,11 +363,11 @@ std::string variant_section(const Variant& variant) {
     return text;
 }
 
-// Returns sections for the objects that only this object contains.
+// Returns one section for each object that a key contains, except for rotations.
 std::string nested_sections(const std::string& heading, const std::vector<KeySpec>& keys) {
     std::string text;
     for (const KeySpec& key : keys) {
-        // Rotations have a section of their own.
+        // Many objects contain rotations, so one separate section describes them.
         if (key.type != ValueType::object || key.content == nullptr || key.content == &detail::rotation_spec())
             continue;
         text += fmt::format("\n### `{}.{}`\n\n{}\n", heading, key.name, key.content->description);

@@ -1,5 +1,5 @@
 /// \file
-/// JSON Schema and reference of scene files, generated from the tables of keys that the reader uses.
+/// JSON Schema and reference of scene files. Both are generated from the tables of keys that the scene reader uses.
 #pragma once
 
 #include <string>

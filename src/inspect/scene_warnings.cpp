@@ -25,21 +25,21 @@ namespace {
 /// Largest number of explicit particles that are tested.
 constexpr std::size_t kMostExplicit = 2000;
 
-/// Largest product of triangles and starts for winding numbers, whose cost is proportional to it. Local: a limit of the
-/// cost of a warning.
+/// Largest product of the numbers of triangles and start positions for which winding numbers are computed. Their cost
+/// is proportional to this product. Local, because it limits only the cost of a warning.
 constexpr double kMostSolidAngles = 2e7;
 
-/// Size of an opening, relative to the mesh, above which it is an intended mouth. Smaller openings make the mesh leak.
-/// Local, because it decides only about a warning.
+/// Diameter of an opening, relative to the diagonal of the mesh's box. Larger openings are intended, such as the mouth
+/// of a funnel. Smaller openings are leaks. Local, because it decides only about a warning.
 constexpr double kMouth = 0.25;
 
-/// Width of an opening, relative to the mesh, up to which it is a seam between parts that passes no particles. Local,
-/// because it decides only about a warning.
+/// Width of an opening, relative to the diagonal of the mesh's box. Narrower openings are seams between parts, through
+/// which no particles pass. Local, because it decides only about a warning.
 constexpr double kCrack = 1e-3;
 
-/// Largest product of kCandidateSlack and the largest coordinate, relative to the mean edge length. Beyond it, a
-/// contact tests more triangles than it can hit. With 0.1, a contact costs 1.6 times as much. With 0.2, it costs 2.8
-/// times as much. Local, because it decides only about a warning.
+/// Largest product of kCandidateSlack and the largest coordinate, relative to the mean edge length. Above this limit,
+/// the narrow phase tests many triangles that the path cannot hit. At 0.1, a contact costs 1.6 times as much as near
+/// the origin. At 0.2, it costs 2.8 times as much. Local, because it decides only about a warning.
 constexpr double kMostSlack = 0.1;
 
 /// Sample of the particles of one emitter, or of the explicit particles.
@@ -47,7 +47,7 @@ struct Starts {
     std::string where;
     std::vector<Particle> particles;
     double largest_radius = 0.0;    ///< largest radius of all particles, in m
-    std::uint64_t overlapping = 0;  ///< number of an emitter's other samples, which overlap a surface
+    std::uint64_t overlapping = 0;  ///< number of samples left out because they overlap a surface
     double fastest = 0.0;           ///< largest speed, in m/s
 };
 
@@ -61,11 +61,11 @@ Starts explicit_starts(const Simulation& simulation) {
     return starts;
 }
 
-/// A single collider, in the coordinates of its reference frame.
+/// A single collider and its queries, in the coordinates of its reference frame.
 struct Solid {
     Solid(const Simulation& simulation, std::size_t i) : number(i), queries({in_its_frame(simulation, i)}) {}
 
-    /// Returns the collider with the mesh as stored in the simulation.
+    /// Returns a copy of the collider that has no frame and uses the mesh stored in the simulation.
     static ColliderDescription in_its_frame(const Simulation& simulation, std::size_t i) {
         ColliderDescription collider = simulation.colliders()[i];
         collider.frame.clear();
@@ -79,7 +79,7 @@ struct Solid {
     CollisionQueries queries;
 };
 
-/// Returns the moving colliders, because the simulation's own queries cover only static ones.
+/// Returns the colliders in reference frames, because the simulation's own queries cover only static colliders.
 std::vector<Solid> moving_solids(const Simulation& simulation) {
     std::vector<Solid> solids;
     for (std::size_t i = 0; i < simulation.colliders().size(); ++i) {
@@ -186,7 +186,7 @@ private:
     std::vector<std::string> lines_;
 };
 
-/// Returns the box of all colliders except planes at the start of the run.
+/// Returns the bounding box of all colliders except planes, at the start of the run.
 Box3 SceneReview::surfaces() const {
     Box3 box;
     for (std::size_t i = 0; i < simulation_.colliders().size(); ++i) {
@@ -198,7 +198,8 @@ Box3 SceneReview::surfaces() const {
     return box;
 }
 
-/// Returns the box of all colliders, or nothing if one of them is a plane or moves: these can be near any start.
+/// Returns the bounding box of all colliders. Returns nothing if a collider is a plane or moves, because such a
+/// collider can be near any start position.
 std::optional<Box3> SceneReview::still_surfaces() const {
     for (const ColliderDescription& collider : simulation_.colliders()) {
         const bool moves = !collider.frame.empty() || is_deforming(collider);
@@ -207,7 +208,7 @@ std::optional<Box3> SceneReview::still_surfaces() const {
     return surfaces();
 }
 
-/// Returns the box of all starts and colliders; a plane contributes its point.
+/// Returns the bounding box of all start positions and colliders. A plane contributes only its reference point.
 Box3 SceneReview::extent() const {
     Box3 box = surfaces();
     for (const Starts& starts : starts_) {
@@ -222,7 +223,8 @@ Box3 SceneReview::extent() const {
     return box;
 }
 
-/// Scenes without colliders are common, so only settings that need a collider cause a warning.
+/// Warns about settings that need a collider in a scene without colliders. Other scenes without colliders are common
+/// and cause no warning.
 void SceneReview::review_surfaces() {
     if (!simulation_.colliders().empty() || starts_.empty()) return;
     const std::string advice = "add colliders, or leave it out";
@@ -283,7 +285,7 @@ void SceneReview::review_area(const TriangleMesh& mesh, const std::string& where
                     mesh.triangles.size()));
 }
 
-/// Open meshes are skipped, because they have no interior.
+/// Warns about overlapping shells. Skips open meshes, because they have no interior.
 void SceneReview::review_shells(const TriangleMesh& mesh, const std::string& where) {
     if (!is_closed(mesh) || !shells_overlap(mesh)) return;
     lines_.push_back(where +
@@ -330,7 +332,7 @@ void SceneReview::review_sides(const Starts& starts, const Solid& solid, const s
                     starts.where, inside, starts.particles.size(), where));
 }
 
-/// Reviews meshes that are closed except for small holes, because the author may think that they are closed.
+/// Warns about particles inside a mesh with small holes, because the author may believe that the mesh is closed.
 void SceneReview::review_leaks(const Starts& starts, const OpenMesh& open) {
     if (starts.particles.empty() || open.openings[0].diameter > kMouth * open.box.diagonal()) return;
     const double affordable = kMostSolidAngles / static_cast<double>(open.mesh.triangles.size());
@@ -351,7 +353,7 @@ void SceneReview::review_leaks(const Starts& starts, const OpenMesh& open) {
                     open.openings.size() == 1 ? "hole" : "holes", open.openings[0].diameter));
 }
 
-/// Reviews meshes with a mouth and an outlet, such as a funnel.
+/// Warns about spheres too large for the outlet of a mesh with a mouth and an outlet, such as a funnel.
 void SceneReview::review_fit(const Starts& starts, const OpenMesh& open) {
     if (open.openings.size() < 2 || open.openings[0].diameter < kMouth * open.box.diagonal()) return;
     double narrowest = open.openings[0].width;
@@ -368,7 +370,7 @@ void SceneReview::review_fit(const Starts& starts, const OpenMesh& open) {
                     starts.where, 2.0 * starts.largest_radius, open.where, narrowest));
 }
 
-/// Returns true if the particle begins in the box of the mesh or falls into it.
+/// Returns true if the particle starts in the box of the mesh, or falls into the box along a straight line.
 bool SceneReview::falls_to(const Particle& particle, const OpenMesh& open) const {
     const Box3& box = open.box;
     const MovingPose pose = simulation_.collider_pose(open.number, particle.birth_time);
@@ -391,9 +393,10 @@ bool SceneReview::falls_to(const Particle& particle, const OpenMesh& open) const
     return begin <= end && fall != Vec3{};
 }
 
-/// Reviews emitters only, because the simulation itself reports overlapping explicit particles.
+/// Warns about emitters that find few free positions. Explicit particles need no warning, because the simulation
+/// refuses overlapping ones.
 void SceneReview::review_positions(const Starts& starts) {
-    // If 5 % of the positions are free, one birth in thirty finds no free position.
+    // The limit is 5 % free positions. At this limit, one birth in thirty finds no free position in all its attempts.
     if (20 * starts.overlapping < 19 * kDrawnStarts) return;
     lines_.push_back(
         fmt::format("{}: {} of {} positions that were tried overlap a surface: births there are refused; "

@@ -13,13 +13,13 @@
 namespace ricochet {
 namespace {
 
-/// A balanced tree over boxes in double precision. Nothing is rounded, so no overlap is missed.
+/// A balanced tree over boxes in double precision. The boxes are not rounded, so no overlap is missed.
 class BoxTree {
 public:
     explicit BoxTree(const std::vector<Box3>& boxes);
 
-    /// Calls visit(number) for every box that has a common point with the given one. May be called from several threads
-    /// at once.
+    /// Calls visit(number) for every box that has a common point with the given box. Several threads may call this
+    /// function at the same time.
     template <typename Visit>
     void for_each_overlap(const Box3& box, Visit&& visit) const {
         std::array<std::uint32_t, kMaxLevels> stack;
@@ -40,14 +40,15 @@ public:
     }
 
 private:
-    // Halves are equal, so 32-bit numbers of boxes give at most 32 levels. Each level leaves one node waiting.
+    // Each split halves the boxes, so fewer than 2^32 boxes give at most 32 levels. The stack contains at most one
+    // waiting node for each level.
     static constexpr std::size_t kMaxLevels = 64;
 
     struct Node {
         Box3 box;
-        std::uint32_t begin = 0;  // leaf: order_[begin, end)
+        std::uint32_t begin = 0;  // the node's boxes are order_[begin, end)
         std::uint32_t end = 0;
-        std::uint32_t first_child = 0;  // index of the first child, which the other one follows; 0 for a leaf
+        std::uint32_t first_child = 0;  // index of the first child; the second child is the next node; 0 for a leaf
     };
 
     [[nodiscard]] static bool boxes_overlap(const Box3& a, const Box3& b) {
@@ -90,7 +91,7 @@ void BoxTree::split(std::uint32_t node, std::uint32_t begin, std::uint32_t end) 
     split(child + 1, middle, end);
 }
 
-// Two triangles, rotated so that the vertices that both name come first, in the same order.
+// Two triangles whose common vertices come first, in the same order.
 struct TrianglePair {
     Triangle first;
     Triangle second;
@@ -141,7 +142,8 @@ private:
                edge_intersects(t[0], t[1], s) || edge_intersects(t[1], t[2], s) || edge_intersects(t[2], t[0], s);
     }
 
-    // Any further common part extends from a common vertex to an edge opposite to it.
+    // If triangles with one common vertex intersect elsewhere, the edge opposite the vertex in one triangle intersects
+    // the other triangle.
     [[nodiscard]] bool intersect_besides_vertex(const TrianglePair& pair) const {
         return edge_intersects(pair.first[1], pair.first[2], pair.second) ||
                edge_intersects(pair.second[1], pair.second[2], pair.first);
@@ -161,7 +163,7 @@ private:
     const TriangleMesh& mesh_;
 };
 
-/// The triangles that have an area, and their boxes.
+/// The boxes of all triangles with a nonzero area, and the numbers of these triangles.
 struct TriangleBoxes {
     explicit TriangleBoxes(const TriangleMesh& mesh) {
         for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -178,19 +180,21 @@ struct TriangleBoxes {
     std::vector<Box3> boxes;
 };
 
-/// Tests of pairs of triangles: per triangle, and for every mesh. With fewer tests, not all pairs of ordinary meshes
-/// would be counted. With more, triangles that all cross each other would take too much time.
+/// The largest number of tests of triangle pairs is kPairTests + kPairTestsPerTriangle * triangles. With a lower limit,
+/// the count would be incomplete for ordinary meshes. With a higher limit, meshes whose triangles all cross each other
+/// would take too much time.
 constexpr std::size_t kPairTestsPerTriangle = 256;
 constexpr std::size_t kPairTests = std::size_t{1} << 20;
-constexpr std::size_t kPairBlock = 256;  // consecutive triangles of one thread
-constexpr std::size_t kPairBlocks = 16;  // blocks tested in parallel
+constexpr std::size_t kPairBlock = 256;  // number of consecutive triangles in a block
+constexpr std::size_t kPairBlocks = 16;  // number of blocks tested in parallel
 
-/// Search for the pairs of consecutive triangles with later ones. It can be interrupted.
+/// Search for the intersections of a range of triangles with triangles of higher index. The search can stop and
+/// continue.
 struct PairSearch {
-    std::size_t next = 0;  ///< next triangle
+    std::size_t next = 0;  ///< next triangle to test
     std::size_t end = 0;
-    std::size_t pairs = 0;  ///< found so far
-    std::size_t tests = 0;  ///< made so far
+    std::size_t pairs = 0;  ///< number of pairs found so far
+    std::size_t tests = 0;  ///< number of tests made so far
 
     /// Continues the search. Stops after the triangle at which `most` further tests have been made.
     void go_on(const BoxTree& tree, const std::vector<Box3>& boxes, const std::vector<std::uint32_t>& numbers,
@@ -216,8 +220,8 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh) {
     const PairTest intersect(mesh);
     std::size_t left = kPairTests + kPairTestsPerTriangle * boxes.size();
     SelfIntersections result;
-    // The blocks of a round share the remaining tests equally. Blocks that need more continue one after the other. The
-    // end of the search therefore does not depend on threads.
+    // The blocks tested in parallel share the remaining tests equally. Blocks that need more tests continue one after
+    // the other. The triangle at which the search ends therefore does not depend on the number of threads.
     for (std::size_t begin = 0; begin < boxes.size() && left > 0; begin += kPairBlocks * kPairBlock) {
         std::array<PairSearch, kPairBlocks> searches;
         parallel_for_blocks(kPairBlocks, 1, [&](std::size_t, std::size_t first, std::size_t last) {

@@ -11,7 +11,8 @@
 namespace ricochet {
 namespace {
 
-/// Smallest restitution of spheres that are meant to keep their energy. Local, because it decides only about a warning.
+/// Spheres with at least this restitution are assumed to be meant to keep their energy. Local, because it decides only
+/// about a warning.
 constexpr double kNearlyElastic = 0.9;
 
 }  // namespace

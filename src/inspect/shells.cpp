@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uint32_t kUnknown = std::numeric_limits<std::uint32_t>::max();
 
-/// Returns the smallest triangle of its shell for each triangle.
+/// Returns the number of the shell of each triangle. A shell's number is the smallest index of its triangles.
 std::vector<std::uint32_t> shells_of(const TriangleMesh& joined) {
     std::vector<std::uint32_t> number;
     const FaceList faces = faces_of(joined, &number);
@@ -63,7 +63,7 @@ Vec3 centroid(const TriangleMesh& mesh, std::uint32_t triangle) {
     return (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3.0;
 }
 
-/// Returns true if an edge of the first triangle passes through the inside of the second.
+/// Returns true if an edge of the first triangle passes through the interior of the second triangle.
 bool pierces(const TriangleMesh& mesh, const Triangle& first, const Triangle& second) {
     const auto at = [&](std::uint32_t v) -> const Vec3& { return mesh.vertices[v]; };
     const auto& [a, b, c] = second;
@@ -82,9 +82,10 @@ bool cross_properly(const TriangleMesh& mesh, std::uint32_t first, std::uint32_t
            pierces(mesh, mesh.triangles[second], mesh.triangles[first]);
 }
 
-/// Returns true if the first triangle crosses the second one's plane at a point from which it leads into a shell.
-/// Points halfway from there to a corner are tested on both sides of the triangle. A shell that only touches does not
-/// contain both.
+/// Returns true if the first triangle extends into the shell of the second triangle. The test uses each edge of the
+/// first triangle that crosses the second triangle's plane. The point halfway between the crossing and a corner is
+/// moved slightly to both sides of the first triangle. The shell must contain both moved points, because a shell that
+/// only touches the triangle contains at most one.
 bool leads_into(const MeshInterior& shell, const TriangleMesh& mesh, std::uint32_t first, std::uint32_t second) {
     // Local: a test position, not a tolerance.
     constexpr double kBeside = 1e-6;  // fraction of the edge's length
@@ -116,7 +117,7 @@ public:
     Interiors(const TriangleMesh& joined, const std::vector<std::uint32_t>& shell_of)
         : joined_(joined), shell_of_(shell_of) {}
 
-    /// Returns the interior of a shell, or nullptr if too many others exist already.
+    /// Returns the interior of a shell, or nullptr if interiors of too many other shells exist already.
     const MeshInterior* of(std::uint32_t shell) {
         constexpr std::size_t kMostInteriors = 256;
         if (interiors_.size() == kMostInteriors && interiors_.count(shell) == 0) return nullptr;
@@ -125,8 +126,9 @@ public:
         return &found.first->second;
     }
 
-    /// Returns true if the first shell lies within the second, though their surfaces may touch. Points close to the
-    /// centroid of each triangle decide, on the inner side of the first shell.
+    /// Returns true if the first shell is inside the second; their surfaces may touch. The second shell must contain a
+    /// point close to the centroid of each triangle of the first shell. These points are on the inner side of the
+    /// triangles.
     bool is_within(std::uint32_t inner, std::uint32_t outer) {
         const auto [known, is_new] = within_.try_emplace({inner, outer}, true);
         for (std::uint32_t t = 0; is_new && known->second && t < shell_of_.size(); ++t) {
@@ -139,7 +141,7 @@ public:
     }
 
 private:
-    /// Returns a point on either side of a triangle.
+    /// Returns two points close to the triangle's centroid, one on each side.
     [[nodiscard]] std::array<Vec3, 2> beside(std::uint32_t triangle) const {
         // Local: a test position, not a tolerance.
         constexpr double kBeside = 1e-6;  // fraction of the triangle's size
@@ -161,9 +163,10 @@ struct ShellVolume {
     double sum = 0.0;
     double magnitude = 0.0;
 
-    /// Returns 1 if the shell is wound outward, -1 if inward, and 0 if rounding decides, as for a flat shell.
+    /// Returns 1 if the shell is wound outward and -1 if it is wound inward. Returns 0 if the sum is not larger than
+    /// its rounding error, as for a flat shell.
     [[nodiscard]] int orientation() const {
-        // Local: an error bound of this arithmetic.
+        // Local: bounds the rounding error of this sum.
         constexpr double kRounding = 1e-12;  // far above the sum's rounding error
         if (!(std::fabs(sum) > kRounding * magnitude)) return 0;
         return sum > 0.0 ? 1 : -1;

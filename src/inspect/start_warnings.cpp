@@ -17,15 +17,15 @@
 namespace ricochet {
 namespace {
 
-/// Smallest plausible radius, in units in the last place of the coordinates; contacts keep a gap of 16 such units.
-/// Local, because it decides only about a warning.
+/// Smallest plausible radius, in units in the last place of the coordinates. For comparison, the contact offset is 16
+/// such units. Local, because it decides only about a warning.
 constexpr double kLeastRadiusUlps = 1e3;
 
-/// Largest plausible distance between starts and colliders, in diagonals of the colliders' box. Rain on a single house
-/// of a landscape stays far below this limit. Local, because it decides only about a warning.
+/// Largest plausible distance between start positions and colliders, in diagonals of the colliders' box. Even a
+/// landscape with rain on a single house stays far below this limit. Local, because it decides only about a warning.
 constexpr double kFarStarts = 100.0;
 
-/// Axis and distance, in m, of a point outside a box.
+/// Largest distance, in m, of a point from a box along a coordinate axis, and this axis.
 struct Beyond {
     int axis = 0;
     double distance = 0.0;
@@ -40,7 +40,7 @@ Beyond beyond(const Box3& box, const Vec3& p) {
     return farthest;
 }
 
-/// Counts of starts outside the bounds.
+/// Counts the start positions outside the bounds and finds the farthest one.
 class OutsideStarts {
 public:
     explicit OutsideStarts(const Box3& bounds) : bounds_(bounds) {}
@@ -53,7 +53,7 @@ public:
         if (by.distance > farthest_.distance) farthest_ = by;
     }
 
-    /// Returns nothing if all starts are inside.
+    /// Returns the warning text, or nothing if all start positions are inside.
     [[nodiscard]] std::optional<std::string> warning(const std::string& where) const {
         if (outside_ == 0) return std::nullopt;
         return fmt::format(
@@ -69,7 +69,8 @@ private:
     Beyond farthest_;
 };
 
-/// Shapes in a reference frame need sampling.
+/// Returns true if the emitter's shape is certainly inside the box. Returns false for shapes in a reference frame,
+/// which must be sampled instead.
 bool is_surely_inside(const EmitterDescription& emitter, const Box3& box) {
     if (emitter.frames) return false;
     const Box3 shape = bounds(emitter.shape);

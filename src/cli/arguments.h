@@ -11,11 +11,11 @@
 
 namespace ricochet::cli {
 
-/// Returns the number that the text consists of, or nothing if the text is not one finite number.
+/// Converts the whole text to a number. Returns nothing if the text is not one finite number.
 [[nodiscard]] std::optional<double> parse_number(const std::string& text);
 
-/// Returns the numbers of a comma-separated list. Throws InputError with the option's name if one is not a finite
-/// number.
+/// Returns the numbers of a comma-separated list. Throws InputError with the option's name if an element of the list is
+/// not a finite number.
 [[nodiscard]] std::vector<double> parse_number_list(const std::string& option, const std::string& text);
 
 struct PictureSize {
@@ -25,14 +25,15 @@ struct PictureSize {
 /// Parses WIDTHxHEIGHT, each 1..16384. Throws InputError.
 [[nodiscard]] PictureSize parse_picture_size(const std::string& text);
 
-/// Parses a number of worker threads, 1..1024. Returns 0 (all) for an empty text. Throws InputError.
+/// Parses a number of worker threads, 1..1024. Returns 0, which means all processors, for an empty text. Throws
+/// InputError.
 [[nodiscard]] int parse_thread_count(const std::string& text);
 
-/// Parses comma-separated numbers of worker threads, 1..1024 each. Returns {0} (all) for an empty text. Throws
-/// InputError.
+/// Parses comma-separated numbers of worker threads, 1..1024 each. Returns {0}, which means all processors, for an
+/// empty text. Throws InputError.
 [[nodiscard]] std::vector<int> parse_thread_counts(const std::string& text);
 
-/// Parses an allowed loss, as a fraction 0 <= x < 1. Throws InputError.
+/// Parses the allowed relative decrease of a ratio, 0 <= x < 1. Throws InputError.
 [[nodiscard]] double parse_tolerance(const std::string& text);
 
 /// Parses the number of timed repetitions, 1..1000. Throws InputError.

@@ -31,7 +31,7 @@ namespace {
 
 using cli::InterruptGuard;
 
-constexpr int kSlower = 1;  // exit code if a ratio has fallen
+constexpr int kSlower = 1;  // exit code if a ratio has decreased by more than the tolerance
 
 // Raw arguments of the command line.
 struct BenchArguments {
@@ -49,7 +49,7 @@ struct BenchArguments {
 struct Measured {
     std::vector<bench::Row> rows;
     std::vector<bench::LoadRow> files;
-    // A signal must not lose finished rows, so the guard exists as soon as there are rows.
+    // Created with the first rows, because a signal must not lose measured rows.
     std::optional<InterruptGuard> guard;
 
     void add(std::span<const bench::Row> more) {
@@ -85,7 +85,8 @@ public:
                             : fmt::format("cases {} to {} of {}", first + 1, first + count, cases_);
     }
 
-    // Shows progress. Every change of work is shown, but steps only at a readable rate. Returns false after a signal.
+    // Shows progress. A new kind of work is shown at once. Progress within the same work is shown at a readable rate.
+    // Returns false after a signal.
     bool operator()(const bench::Progress& progress) {
         const bool needs_query = line_.due();
         if (needs_query || progress.doing != doing_) line_.show(text_of(progress));
@@ -153,8 +154,8 @@ bench::MeasurementPlan plan_of(const BenchArguments& arguments) {
     return plan;
 }
 
-// Inputs to compare with and targets of results. They are opened before hours of work, so that a missing file is
-// reported at once.
+// File to compare with, and output files for the results. They are opened before the measurement, which can take hours,
+// so that a missing file is reported at once.
 class Outlets {
 public:
     explicit Outlets(const BenchArguments& arguments)

@@ -58,7 +58,7 @@ constexpr double kNanosecondsPerSecond = 1e9;
 template <class AnyRow>
 struct Series {
     std::string title;
-    std::function<double(const AnyRow&)> value;  // not a number: nothing to draw
+    std::function<double(const AnyRow&)> value;  // value to draw; NaN leaves a gap
 };
 
 double or_nothing(const std::optional<double>& number) { return number.value_or(kNothing); }
@@ -71,7 +71,7 @@ std::string start(std::string_view suite, std::size_t styles, std::string_view t
                        title);
 }
 
-/// Returns a data block: the first column, then the values of the series.
+/// Returns a gnuplot data block: the first column, then one column for each series.
 template <class AnyRow>
 std::string block(std::span<const AnyRow> rows, const std::function<std::string(const AnyRow&)>& first,
                   const std::vector<Series<AnyRow>>& series) {
@@ -116,7 +116,8 @@ std::string name_axis(std::span<const AnyRow> rows) {
     return fmt::format("set xtics ({}) rotate by -30 noenhanced\nset xrange [-0.6:{:.4g}]\n", tics, end);
 }
 
-/// Returns a plot of bars side by side, each labelled with its value, and optionally a line at 1.
+/// Returns the commands of a bar chart. A group of bars shows one row. Each bar is labelled with its value. with_one
+/// adds a line at 1.
 template <class AnyRow>
 std::string bars(std::string_view suite, std::span<const AnyRow> rows, std::string_view title, std::string_view y,
                  const std::vector<Series<AnyRow>>& series, bool with_one) {
@@ -172,8 +173,8 @@ std::string count_plot(std::span<const Row> rows) {
          {"bare rays", [](const Row& row) { return row.raw_rays_per_second / kMillion; }}});
 }
 
-/// Returns the axes of a speedup plot. Both are logarithmic with equal doublings, with ticks at the measured thread
-/// counts.
+/// Returns the commands for the axes of a speedup plot. Both axes are logarithmic to base 2. The x axis has ticks at
+/// the measured thread counts.
 std::string threads_axis(std::span<const Row> rows) {
     constexpr double kMargin = 1.1;
     std::set<int> counts;
@@ -184,7 +185,7 @@ std::string threads_axis(std::span<const Row> rows) {
         fmt::join(counts, ", "), *counts.begin() / kMargin, *counts.rbegin() * kMargin);
 }
 
-/// Returns a plot with a solid curve per case and a dashed curve of its bare rays.
+/// Returns a speedup plot. Each case has a solid curve, and a dashed curve for its bare rays.
 std::string threads_plot(std::span<const Row> rows) {
     std::vector<std::string> names;
     for (const Row& row : rows) {

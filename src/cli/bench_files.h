@@ -1,4 +1,5 @@
-// Folder of benchmark results, with one folder per machine and one table and one picture per suite, and its plots.
+// Folder of benchmark results, and the plots in it. The results of each machine are in one subfolder, with one table
+// and one picture for each suite.
 #pragma once
 
 #include <filesystem>
@@ -20,8 +21,8 @@ public:
     /// folder cannot be created.
     BenchResults(const std::filesystem::path& folder, bench::Environment environment);
 
-    /// Writes SUITE.csv and SUITE.gp and draws SUITE.png. Existing files are replaced. Returns an empty text, or the
-    /// reason why there is no picture in one line. Throws RunError if a file cannot be written.
+    /// Writes SUITE.csv and SUITE.gp and draws SUITE.png. Existing files are replaced. Returns an empty text, or one
+    /// line with the reason why no picture was drawn. Throws RunError if a file cannot be written.
     [[nodiscard]] std::string write(const std::string& suite, std::vector<bench::Record> records,
                                     const std::string& plot_script) const;
 
@@ -34,17 +35,18 @@ private:
 
 // Plots of the benchmark results.
 
-/// Returns a gnuplot script, including the numbers, that draws SUITE.png in its working folder. There must be at least
-/// one row. The suites draw:
+/// Returns a gnuplot script that contains the numbers and draws SUITE.png in its working folder. Requires at least one
+/// row. The suites draw:
 /// - `size`: the cost over the number of triangles.
 /// - `count`: rates over the number of particles.
 /// - `threads`: the speedup.
-/// - `radius` and `response`: the costs side by side.
+/// - `radius`, `response` and `moving`: relative costs as bars.
+/// - `pairs`: seconds of computation for one simulated second.
 /// - Other suites: the ratios.
-/// All suites except `threads` draw only the rows with the most threads.
+/// For all suites except `threads`, only the rows with the largest number of threads are drawn.
 [[nodiscard]] std::string plot_script(std::string_view suite, std::span<const bench::Row> rows);
 
-/// Returns a gnuplot script for mesh files: the speed of reading and building.
+/// Returns a gnuplot script that draws the speed of reading mesh files and of building their acceleration structures.
 [[nodiscard]] std::string plot_script(std::span<const bench::LoadRow> rows);
 
 }  // namespace ricochet::cli

@@ -102,7 +102,8 @@ void add_impulse_sizes(const VtkPolyData& collider, const ColliderInfo& info, Im
     const auto* const of_all = std::get_if<std::vector<Vec3>>(&impulses->values);
     const auto* const of_lasting = std::get_if<std::vector<Vec3>>(&lasting->values);
     if (of_all == nullptr || of_lasting == nullptr) return;
-    // Triangles of a single surface all have the totals of the whole surface.
+    // If the collider is a single surface, each triangle has the totals of the whole surface. Only one triangle is then
+    // added.
     const bool is_single = is_one_surface(info) || info.type == "plane";
     const std::size_t count = std::min<std::size_t>(of_all->size(), is_single ? 1 : of_all->size());
     for (std::size_t t = 0; t < count; ++t) sizes.add((*of_all)[t], (*of_lasting)[t]);

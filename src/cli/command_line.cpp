@@ -77,7 +77,8 @@ bool Command::is_called() const { return app_->parsed(); }
 
 namespace {
 
-/// Returns the option names that a word can stand for, by similar spelling or by the first letter.
+/// Returns the options that the user may have meant by a word. Their names are spelt similarly to the word. For a word
+/// of one letter, they are the names that start with this letter.
 std::vector<std::string_view> meant_options(std::string_view word, const std::vector<std::string_view>& known) {
     std::string_view name = word.substr(0, word.find('='));
     name.remove_prefix(std::min(name.find_first_not_of('-'), name.size()));
@@ -102,7 +103,7 @@ std::optional<std::string> unknown_option(const CLI::App& command) {
     return std::nullopt;
 }
 
-/// Returns such a message for the called command or the program.
+/// Returns the message of unknown_option() for the called command or for the program, or nothing.
 std::optional<std::string> unknown_option_of_any(const CLI::App& program) {
     for (const CLI::App* command : program.get_subcommands()) {
         if (auto message = unknown_option(*command)) return message;
@@ -136,13 +137,14 @@ std::vector<std::string> CommandLine::commands() const {
 void CommandLine::add_footer(const std::string& text) { app_->footer(text); }
 
 std::optional<int> CommandLine::parse(std::vector<std::string> words, const std::string& hint) {
-    std::reverse(words.begin(), words.end());  // CLI11 expects them in reverse order
+    std::reverse(words.begin(), words.end());  // CLI11 expects the words in reverse order
     try {
         app_->parse(words);
     } catch (const CLI::Success& help_or_version) {
         return app_->exit(help_or_version);
     } catch (const CLI::ParseError& error) {
-        // A misspelt required option is also missing under its right name. The misspelling is the cause.
+        // If a required option is misspelt, CLI11 only reports that it is missing. The message about the misspelt word
+        // names the cause.
         throw InputError(fmt::format("{} ({})", unknown_option_of_any(*app_).value_or(error.what()), hint));
     }
     return std::nullopt;

@@ -15,7 +15,8 @@ class Option;
 
 namespace ricochet::cli {
 
-/// Display and checks of an option. Every function returns *this. The object is a reference into its CommandLine.
+/// An option, with functions that set its display in the help text and its checks. Each of these functions returns
+/// *this. The object is a reference into its CommandLine.
 class Option {
 public:
     explicit Option(CLI::Option* option) : option_(option) {}
@@ -76,7 +77,7 @@ public:
     /// Returns the names of the commands in the order of their addition.
     [[nodiscard]] std::vector<std::string> commands() const;
 
-    /// Adds a last line to the program's help. The help of commands added before does not have it.
+    /// Adds a last line to the program's help. Commands added before this call do not get the line in their help.
     void add_footer(const std::string& text);
 
     /// Parses the words after the program's name and runs the named command. Returns the exit code if help or version

@@ -36,7 +36,7 @@ std::string progress_text(const ComparisonProgress& progress) {
                        progress.response, progress.time_step, kind, progress.step, progress.steps);
 }
 
-// Checks that every row can run, before anything in the output folder changes.
+// Throws InputError if a row of the comparison cannot run. Called before the output folder changes.
 void check_rows(const cli::SceneArguments& arguments, const ComparisonPlan& plan) {
     SceneDescription scene = read_scene(arguments.file, arguments.overrides);
     try {

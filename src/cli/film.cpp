@@ -41,8 +41,9 @@ std::uint64_t big_endian(const unsigned char* bytes, std::size_t count) {
     return value;
 }
 
-/// Returns true if the boxes of an MP4 file fill it exactly and one of them is the index (`moov`): ISO/IEC 14496-12,
-/// section 4.2. Some releases of ffmpeg end with exit code 0 although the disk rejected the film.
+/// Returns true if an MP4 file is complete. Its boxes must fill the file exactly, and one box must be the index
+/// (`moov`); see ISO/IEC 14496-12, section 4.2. Reason: some releases of ffmpeg return exit code 0 although writing to
+/// the disk failed.
 bool is_whole_film(const std::filesystem::path& file) {
     std::error_code error;
     const std::uint64_t size = std::filesystem::file_size(file, error);
@@ -75,7 +76,7 @@ std::filesystem::path temporary_name(std::filesystem::path target) {
 
 Film::Film(std::filesystem::path target, int width, int height, int frames_per_second)
     : target_(std::move(target)), temporary_(temporary_name(target_)), unfinished_(temporary_) {
-    (void)std::signal(SIGPIPE, SIG_IGN);  // write() reports a dead ffmpeg
+    (void)std::signal(SIGPIPE, SIG_IGN);  // if ffmpeg has ended, write() then returns an error
     messages_ = std::tmpfile();
     if (messages_ == nullptr) throw RunError(fmt::format("no temporary file for ffmpeg ({})", std::strerror(errno)));
     start(width, height, frames_per_second);
@@ -96,8 +97,8 @@ void Film::start(int width, int height, int frames_per_second) {
     posix_spawn_file_actions_adddup2(&actions, ::fileno(messages_), STDERR_FILENO);
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // Ctrl-C must reach only this process, which ends
-                                                                   // ffmpeg
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // a group of its own: Ctrl-C must reach only this
+                                                                   // process, which then ends ffmpeg
     const int error = ::posix_spawnp(&process_, "ffmpeg", &actions, &attributes, pointers.data(), environ);
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);

@@ -13,7 +13,7 @@ namespace ricochet::cli {
 /// finish(), no file remains.
 class Film {
 public:
-    /// Memory of ffmpeg for the pictures that it compares, in bytes per pixel; measured.
+    /// Measured memory of ffmpeg for the pictures that it compares while encoding, in bytes per pixel.
     static constexpr double kBytesPerPixel = 200.0;
 
     /// Throws RunError if ffmpeg is not installed. width and height must be even.
@@ -22,7 +22,7 @@ public:
     Film(const Film&) = delete;
     Film& operator=(const Film&) = delete;
 
-    /// Throws RunError with ffmpeg's message if ffmpeg has failed.
+    /// Appends a picture. Throws RunError with ffmpeg's message if ffmpeg has failed.
     void add(const Image& image);
     void finish();
 

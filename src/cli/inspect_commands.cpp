@@ -162,7 +162,7 @@ void run_info(const InfoOptions& options) {
                                   "scene (0.001 for millimetres)");
     }
     if (options.json) {
-        // File names are bytes, but JSON needs UTF-8.
+        // Invalid UTF-8 is replaced, because a file name can contain any bytes and JSON needs UTF-8.
         fmt::print("{}\n", json_of(report, options.mesh).dump(2, ' ', false, Json::error_handler_t::replace));
         return;
     }

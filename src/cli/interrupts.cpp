@@ -13,9 +13,10 @@ namespace ricochet::cli {
 namespace {
 
 constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
-constexpr int kOpen = -1;  // no guard exists, so that nothing can be lost
+constexpr int kOpen = -1;  // no guard exists, so a signal may end the process at once
 
-// The recorded signal, 0 while a guard waits for one, or kOpen. Handlers on any thread read it.
+// The recorded signal, 0 while a guard exists and no signal has arrived, or kOpen. Handlers on any thread access this
+// variable.
 std::atomic<int> noted = kOpen;
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may use nothing else");
 
@@ -35,16 +36,16 @@ bool is_ignored(int signal) {
 }  // namespace
 
 void end_at_interrupts() {
-    (void)std::signal(SIGXFSZ, SIG_IGN);  // write() reports a file that reaches its size limit
+    (void)std::signal(SIGXFSZ, SIG_IGN);  // if a file reaches the size limit, write() then returns an error
     struct sigaction action {};
     action.sa_handler = handle;
-    // System calls resume after a recorded signal.
+    // System calls continue after a signal that was only recorded.
     action.sa_flags = SA_RESTART;
-    // No second handler may start on the thread that removes the files.
+    // All handled signals are blocked during the handler, so that no second handler interrupts the removal of files.
     for (const int signal : kSignals) (void)::sigaddset(&action.sa_mask, signal);
     for (const int signal : kSignals) {
-        // SIGINT is ignored for a background process of a script. The handler is installed anyway, because the script
-        // still uses SIGINT to end it.
+        // A shell script starts background processes with SIGINT ignored. The handler is installed anyway, because such
+        // scripts use SIGINT to end their background processes.
         if (signal == SIGHUP && is_ignored(signal)) continue;
         (void)::sigaction(signal, &action, nullptr);
     }

@@ -1,7 +1,7 @@
 // The command line: `ricochet COMMAND ...`. Every command adds itself to the parser and sets the exit code after it
 // ran.
-// Exit codes: 0 done, 1 failed while running, 2 wrong arguments, scene or mesh, 128 + signal. Every error is one line
-// on stderr.
+// Exit codes: 0 for success, 1 for a failure while running, 2 for wrong arguments, scenes or meshes, 128 + N after
+// signal N. Every error is one line on stderr.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -115,7 +115,7 @@ int run(int argc, char** argv) {
         return report_error(error.what(), kWrongInput);
     } catch (const std::bad_alloc&) {
         return report_error(kOutOfMemory, kFailed);
-    } catch (const std::length_error&) {  // from a container: the size exceeds the address space
+    } catch (const std::length_error&) {  // a container throws it if its size would exceed the address space
         return report_error(kOutOfMemory, kFailed);
     } catch (const std::exception& error) {
         return report_error(error.what(), kFailed);
@@ -130,8 +130,8 @@ const std::terminate_handler terminate_otherwise = std::get_terminate();
     throw std::bad_alloc();
 }
 
-// Ends the program if an allocation fails in code that cannot throw (destructors of JSON documents, iterators of
-// folders). The error is reported in one line too.
+// Reports running out of memory in one line, and ends the program. Called if an allocation fails in code that cannot
+// throw, such as destructors of JSON documents and iterators of folders.
 [[noreturn]] void terminate() {
     if (memory_has_run_out) {
         (void)std::fputs("ricochet: ", stderr);

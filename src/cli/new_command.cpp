@@ -29,8 +29,8 @@ struct NewArguments {
     std::string mesh;
     std::string output;
     std::string kind = "rain";
-    std::string up;    ///< empty: default of the format
-    std::string unit;  ///< unit of the mesh file; empty: metres, as an unconfirmed assumption
+    std::string up;    ///< axis that points up; empty: default of the file format
+    std::string unit;  ///< unit of the mesh file; empty: not stated, so metres are assumed
     bool force = false;
 };
 
@@ -81,7 +81,7 @@ void warn_of_size(const NewArguments& arguments, const Box3& bounds, const std::
                          : "; give --unit mm (or cm, in, ...), or --unit m to keep the size");
 }
 
-// Returns the mesh path relative to the scene's folder, so that both can be moved together.
+// Returns the mesh path relative to the scene's folder, so that the scene and the mesh can be moved together.
 std::string file_from(const fs::path& scene, const fs::path& mesh) {
     const fs::path folder = fs::weakly_canonical(scene.parent_path().empty() ? fs::path(".") : scene.parent_path());
     return fs::proximate(fs::weakly_canonical(mesh), folder).generic_string();

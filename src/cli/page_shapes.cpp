@@ -15,7 +15,7 @@
 namespace ricochet::cli {
 namespace {
 
-/// Limit for the triangles of a mesh that a page draws for each particle. More would make the page slow.
+/// Largest number of triangles of a mesh that a page draws for each particle. Larger meshes would make the page slow.
 constexpr std::size_t kMostPageTriangles = 20'000;
 
 }  // namespace

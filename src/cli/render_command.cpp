@@ -147,8 +147,8 @@ void print_looks(const RunPictures& pictures) {
     }
 }
 
-// Returns the frames to draw. A film shows all frames unless one is specified. A picture without --frame shows the
-// time that the scene specifies.
+// Returns the frames to draw. Without --frame, a film shows all frames. A picture without --frame shows the frame
+// nearest to the time in the scene's picture settings, or the last frame.
 std::vector<FrameFile> frames_of(const RunFolder& folder, const std::string& asked, bool film) {
     if (film && (asked.empty() || asked == "last")) return folder.frames;
     const auto& own = folder.info.picture;
@@ -163,7 +163,7 @@ void render(const RenderArguments& arguments) {
         refuse(fmt::format("--output {}: expected a name that ends in .png or .mp4", arguments.output));
     }
     check_numbers(arguments);
-    (void)parse_progress(arguments.progress);  // invalid words are reported before the work
+    (void)parse_progress(arguments.progress);  // reports an invalid word before the work starts
     const PictureSize size = parse_picture_size(arguments.size);
     const bool film = extension == ".mp4";
     check_film_options(arguments, film);

@@ -76,8 +76,8 @@ ParticleDrawing parse_drawing(const std::string& text) {
     refuse(fmt::format("--draw {}: expected auto, spheres, streaks, soft, glow, sprites or meshes", text));
 }
 
-// Sets the file of a sprite or mesh, and the matching drawing. Throws InputError if another drawing was chosen,
-// because it would not use the file.
+// Sets the file of a sprite or mesh, and the matching drawing. Throws InputError if the user chose another drawing,
+// because that drawing would not use the file.
 void choose_file(const char* option, const std::string& file, ParticleDrawing drawing, std::filesystem::path& target,
                  PictureStyle& style) {
     if (file.empty()) return;

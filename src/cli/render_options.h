@@ -15,7 +15,7 @@ namespace ricochet::cli {
 struct RenderArguments {
     std::string folder;
     std::string output;
-    std::string frame;  // empty: the scene's, or the last; for a film, all
+    std::string frame;  // empty: the frame at the scene's picture time, or the last frame; all frames for a film
     std::string size = "1280x720";
     std::string camera;
     std::string up;
@@ -54,7 +54,7 @@ void add_render_options(cli::Command command, RenderArguments& arguments);
 /// Returns the style of the pictures. Throws InputError on invalid arguments, as do the functions below.
 [[nodiscard]] PictureStyle picture_style(const RenderArguments& arguments);
 void check_numbers(const RenderArguments& arguments);
-/// Rejects film options for pictures.
+/// Throws InputError if options of films are given for a picture.
 void check_film_options(const RenderArguments& arguments, bool film);
 [[nodiscard]] int rays_a_pixel(const RenderArguments& arguments);
 [[nodiscard]] int film_rate(const RenderArguments& arguments);

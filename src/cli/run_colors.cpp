@@ -1,4 +1,4 @@
-// Colours in a run's pictures: quantities of colliders, and the bars that explain them.
+// Colours in a run's pictures: colours of colliders by a quantity, and the colour bars.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -31,7 +31,7 @@ std::string unit_of(const std::string& array) {
 
 }  // namespace
 
-// Colours all colliders with one common range.
+// Colours all colliders by the chosen quantity, with one common range.
 void RunPictures::color_colliders(const RunFolder& folder) {
     const ColliderQuantity& quantity = *style_.collider_quantity;
     TriangleEnergies energies;

@@ -61,7 +61,7 @@ std::vector<std::string> setup_warnings(const SceneDescription& scene) {
     }
 }
 
-// Checks before the work that the file can be written.
+// Throws if the file cannot be written. Called before the run starts.
 void check_writable(const std::string& file) {
     if (!file.empty()) const AtomicFile probe(file);
 }
@@ -98,14 +98,14 @@ struct RunPlan {
     const cli::SharedRun* run = nullptr;
 
     [[nodiscard]] double seconds() const { return earlier_seconds + seconds_since(start); }
-    // Returns a share of the elapsed time, or 0 if the clock has not moved.
+    // Returns `part`, in s, divided by the elapsed time, or 0 if no time has elapsed.
     [[nodiscard]] double share(double part) const { return seconds() > 0.0 ? part / seconds() : 0.0; }
 };
 
-// Grace period for a step in progress when a signal arrives. After it, the step is abandoned.
+// Grace period for the step in progress when a signal arrives. After this period, the step is abandoned.
 class PatienceWithStep {
 public:
-    // Returns true while the step may continue. Safe from any thread.
+    // Returns true while the step may continue. Any thread may call this function.
     [[nodiscard]] bool goes_on() {
         if (InterruptGuard::signal() == 0) return true;
         const Clock::rep now = Clock::now().time_since_epoch().count();
@@ -116,12 +116,12 @@ public:
 
 private:
     static constexpr std::chrono::milliseconds kPatience{250};
-    std::atomic<Clock::rep> first_asked_ = 0;  // time at which the signal was seen
+    std::atomic<Clock::rep> first_asked_ = 0;  // time of the first call after the signal; 0 before
 };
 
-// Steps until the end, a signal or divergence. After a signal, the state is that of the end of the step, or of its
-// start if the step takes long. Returns the reason of a divergence. The guard exists only after the first step,
-// because a signal can lose nothing before.
+// Makes steps until the run ends, a signal arrives or the run diverges. After a signal, the simulation is at the end of
+// the current step, or at its start if the step was abandoned. Returns the reason of a divergence, or nothing. Creates
+// the guard after the first step, because no work is lost if a signal arrives before.
 std::optional<std::string> step_and_write(Simulation& simulation, cli::RunOutput& output, const RunPlan& plan,
                                           cli::RunProgress& progress, std::optional<InterruptGuard>& guard) {
     output.write_frame(simulation);
@@ -187,10 +187,10 @@ void add_options(cli::Command command, RunArguments& a) {
         .type_name("T");
 }
 
-// All parts of a run. If ranks share it, only the first rank has a writer. Only the first rank has the folder, unless
-// all write into it.
+// All objects of a run. If several ranks share the run, only the first rank has a writer. Only the first rank has the
+// folder, unless all ranks write pieces.
 struct PreparedRun {
-    SceneDescription scene{};  // its setup moves into the simulation
+    SceneDescription scene{};  // prepare() moves its setup into the simulation
     RunInfo info{};
     RunPlan plan{};
     Box3 region{};  // region of the particles
@@ -202,7 +202,7 @@ struct PreparedRun {
     cli::RunOutput out{};
 };
 
-// Does all checks that do not need a file of the folder.
+// Does all checks that need no file of the output folder.
 void prepare(const RunArguments& arguments, const cli::SharedRun& run, PreparedRun& prepared) {
     cli::check_extension(arguments);
     prepared.progress = cli::parse_progress(arguments.progress);
@@ -236,7 +236,7 @@ void open_folder(const RunArguments& arguments, PreparedRun& prepared) {
     check_writable(arguments.output_state);
 }
 
-// Restores the state at which the run in the folder has stopped.
+// Restores the state at which the run in the folder has stopped. Returns nothing for a new run.
 std::optional<Checkpoint> resume(const RunArguments& arguments, PreparedRun& prepared) {
     if (!arguments.resume) return std::nullopt;
     Simulation& simulation = *prepared.simulation;
@@ -253,7 +253,7 @@ std::optional<Checkpoint> resume(const RunArguments& arguments, PreparedRun& pre
     return checkpoint;
 }
 
-// Returns values that must be equal on all ranks before one of them touches a file.
+// Returns values that must be equal on all ranks. They are compared before any rank opens a file.
 std::vector<std::uint64_t> what_is_asked(const RunArguments& arguments, const PreparedRun& prepared) {
     StateHash names;
     for (const std::string& name : {arguments.output, arguments.output_state}) {
@@ -271,8 +271,8 @@ std::vector<std::uint64_t> what_is_asked(const RunArguments& arguments, const Pr
             names.value()};
 }
 
-// Opens the outputs after the folder is reserved, so that no other run changes its checkpoint. Returns values that
-// must be equal on all ranks.
+// Opens the outputs. The folder must already be locked, so that no other run changes its checkpoint. Returns values
+// that must be equal on all ranks.
 std::vector<std::uint64_t> begin(const RunArguments& arguments, PreparedRun& prepared) {
     const std::optional<Checkpoint> resumed = resume(arguments, prepared);
     const Simulation& simulation = *prepared.simulation;
@@ -295,7 +295,8 @@ std::vector<std::uint64_t> begin(const RunArguments& arguments, PreparedRun& pre
             std::bit_cast<std::uint64_t>(resumed ? resumed->output_seconds : 0.0)};
 }
 
-// Opens the folder on the other ranks after the first one has finished with the existing files.
+// Opens the folder on the other ranks, if all ranks write pieces. The first rank must have finished its work on the
+// files of an earlier run.
 std::optional<int> share_folder(const RunArguments& arguments, const cli::SharedRun& run, PreparedRun& prepared) {
     if (!run.ranks() || !prepared.plan.output.pieces) return std::nullopt;
     if (const auto failed = run.together([&] {
@@ -326,7 +327,7 @@ std::optional<int> prepare_together(const RunArguments& arguments, const cli::Sh
     return std::nullopt;
 }
 
-// Writes the last files of the whole run.
+// Writes the last frame, the totals of the colliders, the final state and the summary.
 RunSummary write_the_end(const RunArguments& arguments, PreparedRun& prepared, const cli::RunResources& of_others,
                          const std::optional<std::string>& diverged) {
     Simulation& simulation = *prepared.simulation;
@@ -350,7 +351,7 @@ RunSummary write_the_end(const RunArguments& arguments, PreparedRun& prepared, c
     summary.wall_seconds = prepared.plan.seconds();
     summary.interrupted = is_interrupted;
     writer.write_summary(summary);
-    // The checkpoint is removed only now, because the run can resume from it until everything is on disk.
+    // The checkpoint is renamed only now, because the run can resume from it until all files are on disk.
     if (!diverged && !is_interrupted) writer.keep_checkpoint_for_extension();
     return summary;
 }
@@ -380,7 +381,7 @@ int cli::run_scene(const RunArguments& arguments) {
     }
     if (!diverged) prepared.out.write_frame(simulation);
     prepared.out.complete_frame();
-    // An interrupted run needs a checkpoint to resume.
+    // An interrupted run needs a checkpoint, so that it can be resumed.
     if (!diverged && !simulation.finished()) prepared.out.write_checkpoint(simulation, prepared.plan.seconds());
     const RunResources of_others = run.resources_of_others();
     std::optional<RunSummary> summary;

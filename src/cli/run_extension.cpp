@@ -13,7 +13,7 @@ namespace ricochet::cli {
 
 namespace {
 
-// Returns true if the last step has full length, so that longer runs have the same step.
+// Returns true if the last step has full length. A longer run then makes an identical step.
 bool has_whole_last_step(const Simulation& simulation) {
     const SimulationOptions& options = simulation.options();
     return options.duration == static_cast<double>(simulation.step_count()) * options.time_step;

@@ -17,7 +17,7 @@ std::string rate_text(std::uint64_t count, double seconds) {
     return seconds > 0.0 ? short_number(static_cast<double>(count) / seconds) : "-";
 }
 
-/// Smallest share of lasting contact in the impulse for which impulses from impacts are reported separately.
+/// Smallest share of lasting contact in the impulses for which the report states the share of impacts.
 constexpr double kNotableShare = 0.01;
 
 void print_impulse_share(const ImpulseSizes& sizes) {
@@ -29,7 +29,7 @@ void print_impulse_share(const ImpulseSizes& sizes) {
         100.0 * sizes.share_of_impacts());
 }
 
-/// Prints the groups of a collider with the most hits on one line.
+/// Prints one line with the most frequently hit groups of a collider.
 void print_groups(const ColliderSummary& collider) {
     constexpr std::size_t kMostGroups = 8;
     if (collider.groups.empty()) return;
@@ -50,7 +50,8 @@ void print_counter(const CounterTotals& counter) {
           counter.forward, counter.forward_mass, counter.backward, counter.backward_mass);
 }
 
-/// Overlap relative to the smaller radius. Solved dense contact leaves smaller overlaps.
+/// Overlap of two spheres, relative to the smaller radius, above which a warning is printed. A contact island that is
+/// solved to its tolerance leaves smaller overlaps.
 constexpr double kLargeOverlap = 0.05;
 
 void print_notes(const SimulationStatistics& statistics) {

@@ -12,14 +12,13 @@
 
 namespace ricochet::cli {
 
-/// Returns the seconds since a time. The result is not negative, even if the clock was set back during a run of
-/// several days.
+/// Returns the seconds since a time. The result is never negative, even if the clock was set back during a long run.
 [[nodiscard]] double seconds_since(std::chrono::steady_clock::time_point start);
 
 /// Progress of all processes of a run together.
 struct RunCounts {
     std::uint64_t particles = 0;
-    std::uint64_t particle_steps = 0;  ///< since the first step of the run
+    std::uint64_t particle_steps = 0;  ///< number of steps of all particles since the start of the run
 };
 
 /// The progress line of a run. Steps get slower as particles are emitted, so the remaining time is estimated from the
@@ -43,9 +42,9 @@ private:
 
 /// Prints the final report on standard output. `output` is the run's folder.
 void print_report(const RunSummary& summary, const std::string& output);
-/// Prints warnings about wrong results and incomplete files. They appear even with --quiet.
+/// Prints warnings about wrong results and incomplete files. These warnings are printed even with --quiet.
 void print_losses(const std::string& scene, const SimulationStatistics& statistics);
-/// Prints the findings of a verified run. Returns true if there are any.
+/// Prints the violations that a run with --verify has found. Returns true if it has found any.
 bool print_violations(const Simulation& simulation);
 
 }  // namespace ricochet::cli

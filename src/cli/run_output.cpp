@@ -8,7 +8,7 @@
 namespace ricochet::cli {
 namespace {
 
-/// Adds its lifetime to the output time of the writer, if there is one.
+/// Timer that adds its own lifetime to the output time of the writer, if the writer exists.
 class Spending {
 public:
     explicit Spending(RunWriter* writer) : writer_(writer) {}
@@ -29,8 +29,8 @@ void RunOutput::add_step(Simulation& simulation) {
     simulation.show_whole(Shown::contacts, [&] { parts_.writer->add_step(simulation); });
 }
 
-// Writes a frame. Pieces are written in the background, so the list of a frame's pieces is written with the next
-// frame.
+// Writes a frame. Pieces are written in the background, so the index of a frame's pieces is written together with the
+// next frame.
 void RunOutput::write_frame(Simulation& simulation) {
     if (last_frame_ == simulation.step_index()) return;
     last_frame_ = simulation.step_index();
@@ -64,7 +64,8 @@ void RunOutput::write_checkpoint(Simulation& simulation, double seconds) {
     }
     simulation.show_whole(in_parts ? Shown::all_but_particles : Shown::all, [&] {
         parts_.writer->write_checkpoint(simulation, parts_.fingerprint, seconds, parts);
-        // The older parts are removed only now, because the older checkpoint was valid until here.
+        // The parts of the older checkpoint are removed only now, because that checkpoint was valid until the new one
+        // was complete.
         parts_.folder->remove_checkpoint_parts(names_of(parts));
     });
 }

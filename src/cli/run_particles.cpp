@@ -20,7 +20,7 @@ namespace {
 constexpr Vec3 kRopeColor{0.55, 0.40, 0.20};
 constexpr Vec3 kClothColor{0.42, 0.075, 0.06};
 constexpr double kThreadRadius = 0.5;  // radius of a spring between points, relative to the radius of a point
-constexpr double kBead = 1.5;          // a particle thicker than its threads by this factor is drawn too
+constexpr double kBead = 1.5;          // a particle is drawn too if it is thicker than its threads by this factor
 
 template <class Value>
 void append(std::vector<Value>& all, std::vector<Value>&& more) {
@@ -40,8 +40,8 @@ std::vector<double> radii_of(const VtkPolyData& frame) {
     return own == nullptr ? std::vector<double>(frame.points.size(), 0.0) : scalar_values(*own);
 }
 
-// Returns the number of steps of paths. Curvature by gravity needs few steps. The corner of an impact is cut off by at
-// most one step.
+// Returns the number of positions along a drawn path. Paths that only gravity bends need few positions. With impacts,
+// more positions are needed, because a straight piece between two positions cuts off the corner at an impact.
 std::size_t way_steps(const ShutterPaths& paths) {
     const bool bends = std::any_of(paths.nodes.begin(), paths.nodes.end(), [](const auto& nodes) {
         return std::any_of(nodes.begin(), nodes.end(),
@@ -68,8 +68,8 @@ std::vector<RunPictures::Group> RunPictures::groups_of(const VtkPolyData& frame,
     return groups;
 }
 
-/// Adds threads and cloth. Marks the particles that they replace: corners of cloth, and ends of threads that have no
-/// size or are hardly thicker than the thread.
+/// Adds the springs as threads and cloth. Marks the particles that need no drawing of their own. These particles are
+/// corners of cloth, and ends of threads without a size or hardly thicker than the thread.
 std::vector<bool> RunPictures::add_springs(const VtkPolyData& frame, const std::vector<double>& radii,
                                            PreviewMoving& moving) const {
     const std::vector<double> own_radii = radii_of(frame);
@@ -125,7 +125,7 @@ void RunPictures::keep_off_walls(const Moment& moment, const Group& group, Previ
     walls.clear({spheres.centers, spheres.radii, own});
 }
 
-/// Sets the paths of spheres while the shutter is open.
+/// Sets the paths that spheres take while the shutter is open.
 void RunPictures::set_ways(const Moment& moment, const std::vector<std::size_t>& shown, PreviewSpheres& spheres) const {
     const ShutterPaths& paths = moment.paths;
     const std::size_t steps = way_steps(paths);
@@ -140,7 +140,7 @@ void RunPictures::set_ways(const Moment& moment, const std::vector<std::size_t>&
     }
 }
 
-/// Adds spheres as threads along their paths.
+/// Adds streaks, which are threads along the paths of spheres.
 void RunPictures::add_streaks(const ShutterPaths& paths, const std::vector<std::size_t>& shown,
                               const PreviewSpheres& spheres, PreviewMoving& moving) {
     for (std::size_t k = 0; k < shown.size(); ++k) {
@@ -168,15 +168,15 @@ void RunPictures::add_solid(const Moment& moment, const Group& group, PreviewSph
     append(moving.spheres.emissions, std::move(spheres.emissions));
 }
 
-/// Adds sprites. Images have one layer per drawing. All soft discs share one layer, and all glowing discs share
-/// another, which comes last.
+/// Adds sprites. Images have one layer per drawing. All soft discs share one layer. All glowing discs share the last
+/// layer.
 void RunPictures::add_flat(const VtkPolyData& frame, const Group& group, std::vector<Sprites>& layers) const {
     const ParticleDrawing kind = group.drawing->kind;
     const VtkArray* const own = find_array(frame.point_arrays, kOpacityAttribute);
     const std::vector<double> opacities =
         own == nullptr ? std::vector<double>(frame.points.size(), 1.0) : scalar_values(*own);
     std::vector<Vec3> colors = sprite_colors(frame, kind);
-    // Images of particles without their own colours are not tinted.
+    // Images are not tinted if the particles have no colours of their own.
     if (kind == ParticleDrawing::sprites && !own_colors_ && !colors_are_told_) {
         std::fill(colors.begin(), colors.end(), Vec3{1, 1, 1});
     }

@@ -130,7 +130,7 @@ void RunPictures::survey(const std::vector<FrameFile>& chosen) {
     if (!style_.range && style_.color_by == kSpeed) range_.low = 0.0;
 }
 
-// Chooses automatic settings from a frame, and records whether any particle has a size of its own.
+// Chooses automatic settings by the arrays of a frame. Records whether any particle has a size of its own.
 void RunPictures::choose_looks(const VtkPolyData& frame) {
     const bool has_colors = find_array(frame.point_arrays, kColorAttribute) != nullptr;
     if (style_.color_by.empty()) {
@@ -231,7 +231,7 @@ std::vector<double> RunPictures::shown_values(const VtkPolyData& frame) const {
     return scalar_values(*array);
 }
 
-// Returns a visible radius for points, which have no size. It decreases with their number.
+// Returns a visible radius for points, which have no size. The radius decreases with the number of particles.
 double RunPictures::visible_radius() const {
     const double view =
         std::tan(0.5 * camera_.fov_degrees * std::numbers::pi / 180.0) * length(camera_.target - camera_.position);
@@ -277,7 +277,7 @@ std::vector<Vec3> RunPictures::emissions(const VtkPolyData& frame) const {
     return lights;
 }
 
-// Returns the colours of discs and images. They combine emitted and reflected light in one colour.
+// Returns the colours of discs and images. Each colour combines emitted and reflected light.
 std::vector<Vec3> RunPictures::sprite_colors(const VtkPolyData& frame, ParticleDrawing kind) const {
     if (emissions_.empty()) return colors(frame);
     if (kind == ParticleDrawing::glow) return emissions_;

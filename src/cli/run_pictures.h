@@ -38,9 +38,9 @@ inline constexpr Vec3 kPlaneColor{0.30, 0.30, 0.29};
 inline constexpr double kParticleAlbedo = 0.8;  ///< factor on the colours of the colour map, so that sunlit colours do
                                                 ///< not saturate
 
-/// Largest number of positions of a sphere while the shutter is open.
+/// Largest number of positions along the path of a sphere while the shutter is open.
 inline constexpr std::size_t kMostWaySteps = 65;
-/// Number of positions if no sphere hits anything.
+/// Number of these positions if no sphere hits a surface or a sphere.
 inline constexpr std::size_t kFewWaySteps = 9;
 
 /// Array of the temperatures in K that make particles glow.
@@ -71,13 +71,13 @@ struct Lens {
     double focus_distance = 0.0;  ///< distance of the plane of focus, in m; 0: at the target
 };
 
-/// Background of a picture. Without a colour, it is the sky of the lighting.
+/// Background of a picture. If no colour is set, the background is the sky of the lighting.
 struct Background {
-    std::optional<Vec3> color;  ///< linear light
+    std::optional<Vec3> color;  ///< linear RGB
     bool transparent = false;
 };
 
-/// A level ground that is not part of the run.
+/// A horizontal ground plane that is drawn but is not part of the run.
 struct Ground {
     enum class Kind { none, automatic, at_height } kind = Kind::none;
     double height = 0.0;  ///< along the upward axis, in m
@@ -90,7 +90,7 @@ struct ParticleShape {
     std::optional<StretchDescription> stretch;
 };
 
-/// Drawing of particles with all its data, for one emitter or for all.
+/// Drawing of particles with all its data. It applies to the particles of some emitters, or to all particles.
 struct Drawing {
     ParticleDrawing kind = ParticleDrawing::automatic;
     ParticleShape shape;
@@ -108,13 +108,14 @@ struct Drawing {
 
 /// Style of a run's pictures.
 struct PictureStyle {
-    /// Array of the frames that colours the particles; speed is the length of velocity. Empty: the particles' own
-    /// colours, or speed if they have none.
+    /// Name of the array in the frames that colours the particles. `speed` is the length of `velocity`. An empty name
+    /// means the particles' own colours, or `speed` if they have none.
     std::string color_by;
     ParticleDrawing drawing = ParticleDrawing::automatic;
     std::optional<ValueRange> range;
     ColorMap map = ColorMap::plasma;
-    /// Drawn radius in m; nothing: from the scene. 0: from the frames, or a visible radius for points.
+    /// Drawn radius, in m. If not set, the scene's value is used. The value 0 means the radii in the frames, or a
+    /// visible radius for points.
     std::optional<double> particle_radius;
     std::optional<ColliderQuantity> collider_quantity;  ///< quantity that colours the colliders
     std::optional<ValueRange> collider_range;
@@ -123,7 +124,7 @@ struct PictureStyle {
     std::optional<Camera> camera;
     std::optional<Vec3> up;
     std::optional<Lens> lens;
-    // Settings that are not set here come from the run's own picture settings.
+    // If one of the following settings is not set, the run's own picture settings are used.
     std::optional<Lighting> light;
     std::optional<Background> background;
     std::optional<Ground> ground;
@@ -134,36 +135,37 @@ struct PictureStyle {
     std::filesystem::path mesh;        ///< mesh file for particles; empty: from the run
 };
 
-/// Returns a mesh for particles. The middle of its bounding box is the origin, and its farthest vertex is at distance
-/// 1. Throws InputError if the file has no extent.
+/// Reads a mesh that is drawn for each particle. The result is moved and scaled: the centre of the bounding box is the
+/// origin, and the farthest vertex is at distance 1. Throws InputError if the file has no extent.
 [[nodiscard]] TriangleMesh shape_from(const std::filesystem::path& file);
 
 /// Renders chosen frames with one camera, one colour range and one set of colliders.
 class RunPictures {
 public:
-    /// Reads the colliders and checks the chosen frames. Throws InputError for invalid files and for names that the
-    /// run does not have.
+    /// Reads the colliders and checks the chosen frames. Throws InputError for invalid files and for unknown names of
+    /// colliders or arrays.
     RunPictures(const RunFolder& folder, const std::vector<FrameFile>& chosen, PictureStyle style, double aspect);
 
     /// Renders the run at a time between its first and its last frame.
     [[nodiscard]] Image picture(double time, const PictureOptions& options);
-    /// Returns the frames with interpolation between them.
+    /// Returns the states of the run at any time, interpolated between frames.
     [[nodiscard]] RunTimeline& timeline() { return timeline_; }
     [[nodiscard]] double shutter() const { return style_.shutter.value_or(0.0); }
     /// Sets lighting and background.
     void set_scenery(PictureOptions& options) const;
     [[nodiscard]] const ValueRange& range() const { return range_; }
-    /// Returns the bars that explain the colours of the particles and of the colliders.
+    /// Returns the colour bars of the particles and of the colliders.
     [[nodiscard]] std::vector<ColorBar> color_bars() const;
     /// Returns a note about the impulses that the collider colours omit, or an empty text.
     [[nodiscard]] std::string collider_note() const {
         return style_.collider_quantity ? style_.collider_quantity->note(impulse_sizes_) : std::string();
     }
-    /// Returns the end of the collider totals in s, if it is before the last frame because the run was killed.
+    /// Returns the time, in s, at which the collider totals end. Returns nothing unless they end before the last frame
+    /// because the run was killed.
     [[nodiscard]] std::optional<double> totals_end() const { return totals_end_; }
     /// Returns the array that colours the particles.
     [[nodiscard]] const std::string& color_by() const { return style_.color_by; }
-    /// Returns true if the frames contain the colours.
+    /// Returns true if the particles have the colours that the frames contain.
     [[nodiscard]] bool shows_own_colors() const { return own_colors_; }
     [[nodiscard]] const Camera& camera() const { return camera_; }
     /// Returns true if streaks are requested, but spheres are drawn because the shutter is closed.
@@ -175,12 +177,12 @@ public:
     [[nodiscard]] bool draws_sprites() const {
         return std::any_of(drawings_.begin(), drawings_.end(), [](const Drawing& d) { return d.is_flat(); });
     }
-    /// Returns true if sprites have only the colours of their image.
+    /// Returns true if the image alone determines the colours of sprites.
     [[nodiscard]] bool shows_image_colors() const { return plain_image_; }
-    /// Returns true if particles have only the colour of their heat.
+    /// Returns true if the temperature alone determines the colours of particles.
     [[nodiscard]] bool shows_heat_alone() const { return embers_; }
-    /// Returns the name of a collider that contains most particles and hides them from the outside camera, or an empty
-    /// text.
+    /// Returns the name of a collider that contains most particles and hides them from a camera outside it. Returns an
+    /// empty text if no collider does.
     [[nodiscard]] const std::string& hiding_collider() const { return hiding_; }
 
 private:
@@ -189,7 +191,7 @@ private:
         Vec3 color;
         bool glass = false;
         bool hidden = false;
-        bool has_color = false;  // its own colour from the scene
+        bool has_color = false;  // true if the scene sets the collider's colour
         double roughness = 1.0;
         bool pattern = true;
     };
@@ -260,23 +262,23 @@ private:
     std::vector<PreviewMesh> meshes_;
     std::vector<std::filesystem::path> mesh_files_;  // one per mesh
     ValueRange collider_range_;
-    ImpulseSizes impulse_sizes_;                   // on the colliders coloured by a quantity
+    ImpulseSizes impulse_sizes_;                   // impulses on the colliders that a quantity colours
     std::optional<double> totals_end_;             // in s
-    std::map<std::uint32_t, Looks> moving_looks_;  // of moving colliders, by their number
+    std::map<std::uint32_t, Looks> moving_looks_;  // appearance of moving colliders, by collider number
     std::map<std::uint32_t, std::filesystem::path> moving_files_;
-    std::map<std::uint32_t, std::vector<Vec3>> moving_colors_;  // colours of their triangles, if a quantity colours
-                                                                // them
+    std::map<std::uint32_t, std::vector<Vec3>> moving_colors_;  // triangle colours of moving colliders, if a quantity
+                                                                // colours them
     std::vector<PreviewPlane> planes_;
-    bool is_told_ = false;              // the drawing comes from the command line
+    bool is_told_ = false;              // true if the drawing comes from the command line
     std::vector<Drawing> drawings_;     // the first one is for particles whose emitter has no drawing
     std::vector<TriangleMesh> shapes_;  // meshes for particles, fitted into the ball of radius 1
     std::vector<Turn> turns_;           // rotations of the particles of the current frame, if they spin
     bool plain_image_ = false;
     bool embers_ = false;
-    std::vector<Vec3> emissions_;  // of the particles of the current frame; empty: no emission
+    std::vector<Vec3> emissions_;  // light that the particles of the current frame emit; empty if none
     RunTurning turning_;
     std::string hiding_;
-    std::optional<WallClearance> walls_;  // walls at rest, created when the first ball is larger than its particle
+    std::optional<WallClearance> walls_;  // walls at rest; created for the first ball that is larger than its particle
     std::optional<Preview> preview_;
 };
 

@@ -1,5 +1,5 @@
 /// \file
-/// A run of a scene, for `ricochet run` and other commands that need a run.
+/// Runs of scenes, for `ricochet run` and other commands that need a run.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace ricochet::cli {
 struct RunArguments {
     SceneArguments scene;
     std::string output;        ///< output folder
-    std::string output_state;  ///< file; empty: not written
+    std::string output_state;  ///< file for the final state; if empty, no state is written
     std::string threads;
     std::string response;
     std::string progress = "auto";  ///< auto, always or never

@@ -87,7 +87,7 @@ WallClearance RunPictures::walls_at_rest() const {
     return walls;
 }
 
-// Returns true if a mesh encloses most of the probes, but not the eye.
+// Returns true if a mesh encloses most of the probes, which are particle positions, but not the eye of the camera.
 bool RunPictures::hides(const TriangleMesh& mesh, const std::vector<Vec3>& probes, const Vec3& eye) const {
     constexpr double kInside = 0.5;  // threshold of the winding number, which is 1 inside a closed mesh
     const Box3 box = bounds(mesh);
@@ -101,7 +101,7 @@ bool RunPictures::hides(const TriangleMesh& mesh, const std::vector<Vec3>& probe
     return 2 * std::accumulate(is_inside.begin(), is_inside.end(), std::size_t{0}) > probes.size();
 }
 
-// Finds a collider that hides the particles of the last chosen frame with particles.
+// Finds a collider that hides the particles from the camera. Uses the last chosen frame that contains particles.
 void RunPictures::find_hiding(const RunFolder& folder, const std::vector<FrameFile>& chosen) {
     constexpr std::size_t kProbes = 32;
     const std::vector<FrameFile> sample = spread_sample(chosen);

@@ -1,4 +1,4 @@
-// Shapes of a run's particles: images, copies of a mesh, balls that stretch.
+// Shapes of a run's particles: images, copies of a mesh, and stretched balls.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -128,8 +128,10 @@ void RunPictures::widen_subject(const VtkPolyData& frame) {
 
 void RunPictures::require_room_for_copies() const {
     if (!draws_copies()) return;
-    constexpr double kCopy = 600.0;      // including its entries in the lists of a picture and in Embree's hierarchy
-    constexpr double kWayPoint = 300.0;  // two copies of the point, and its entry in the hierarchy
+    constexpr double kCopy = 600.0;      // bytes of a copy, including its entries in the lists of a picture and in
+                                         // Embree's BVH
+    constexpr double kWayPoint = 300.0;  // bytes of a point of a path: two copies of the point, and its entry in the
+                                         // BVH
     constexpr double kTriangle = 400.0;
     const double ways = shutter() > 0.0 ? kWayPoint * (timeline_.knows_impacts() ? kMostWaySteps : kFewWaySteps) : 0.0;
     double triangles = 0.0;
@@ -146,8 +148,8 @@ std::vector<AffineMap> RunPictures::turns_of(const Group& group) const {
     return maps;
 }
 
-// Stretches copies along the velocity. Near an impact, they are flattened along its normal instead. The flattened
-// copies move towards the surface to close the gap.
+// Stretches copies along the velocity. Near an impact, copies are flattened along the contact normal instead. Flattened
+// copies are moved towards the surface, so that they touch it.
 void RunPictures::stretch_copies(const VtkPolyData& frame, const Group& group, const std::vector<double>& radii,
                                  PreviewCopies& copies) {
     const StretchDescription& stretch = *group.drawing->shape.stretch;
@@ -181,7 +183,7 @@ void RunPictures::stretch_copies(const VtkPolyData& frame, const Group& group, c
     }
 }
 
-// Adds the spheres of a group as copies.
+// Adds the particles of a group as copies of a mesh or of a ball.
 void RunPictures::add_copies(const Moment& moment, const Group& group, PreviewSpheres&& spheres, PreviewCopies& all) {
     PreviewCopies copies;
     copies.placements = turns_of(group);

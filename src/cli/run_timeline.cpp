@@ -14,7 +14,7 @@
 namespace ricochet::cli {
 namespace {
 
-constexpr double kSameTime = 1e-9;  // relative to the spacing of two frames
+constexpr double kSameTime = 1e-9;  // largest difference of equal times, relative to the time between two frames
 
 template <class Value>
 const std::vector<Value>& values_of(const VtkPolyData& data, const char* name) {
@@ -33,8 +33,9 @@ Whole mixed(Whole a, Whole /*b*/, double /*t*/) {
 
 constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
 
-// Adds the nearest impacts of a contact log. For two spheres, the log has only the velocities of one of them. Its
-// change of velocity is used as the speed.
+// Replaces the nearest impact of each particle if the contact log has a nearer one. For an impact of two spheres, the
+// log has the velocities of only one sphere. The normal component of its velocity change then replaces the approach
+// speed.
 void add_near_impacts(const VtkPolyData& log, double time, double reach,
                       const std::unordered_map<std::int64_t, std::size_t>& rows, std::vector<NearImpact>& nearest) {
     const auto& particles = values_of<std::int64_t>(log, "particle");
@@ -64,8 +65,8 @@ void add_near_impacts(const VtkPolyData& log, double time, double reach,
     }
 }
 
-/// Copies arrays. The values are copied before they are moved into a variant, because an allocation failure inside a
-/// variant's copy corrupts it; see list_of().
+/// Copies arrays. The values are first copied and then moved into a variant. Reason: an allocation failure inside a
+/// variant's copy corrupts the variant; see list_of().
 std::vector<VtkArray> copies_of(const std::vector<VtkArray>& arrays) {
     std::vector<VtkArray> copies;
     copies.reserve(arrays.size());
@@ -94,7 +95,8 @@ VtkPolyData copy_of(const VtkPolyData& frame) {
 
 }  // namespace
 
-// The particles at one time: their rows in the previous and in the next frame, and a lookup by id.
+// The particles at one time. Contains the row of each particle in the previous and in the next frame, and a lookup by
+// id.
 struct RunTimeline::Rows {
     std::vector<std::size_t> before;
     std::vector<std::size_t> after;
@@ -179,7 +181,8 @@ void RunTimeline::add_frame_nodes(std::size_t first, std::size_t last, const Row
 
 void RunTimeline::add_impact_nodes(std::size_t first, std::size_t last, const Rows& rows, ShutterPaths& paths) {
     if (first == last) return;
-    // The file with a frame's step contains the impacts up to it. Large logs have additional files in between.
+    // The contact file named by a frame's step contains the impacts before that frame. Large logs have additional files
+    // between two frames.
     const auto begin = contacts_.upper_bound(files_[first].step);
     const auto end = contacts_.upper_bound(files_[last].step);
     for (auto file = begin; file != end; ++file) {
@@ -280,7 +283,7 @@ VtkPolyData RunTimeline::mixed_frame(std::size_t k, double time, const Rows& row
         }
         out.fields.push_back(std::move(mix));
     }
-    // All particles of threads and cloth exist in both frames.
+    // Lines and triangles are copied unchanged, because all particles of threads and cloth exist in both frames.
     out.lines = a.lines;
     out.triangles = a.triangles;
     out.has_vertices = a.has_vertices;

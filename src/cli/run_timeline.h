@@ -1,5 +1,5 @@
-// A run at any time between its first and its last frame. States between frames are interpolated from both frames and
-// the impacts in between.
+// States of a run at any time between its first and its last frame. A state between two frames is interpolated from
+// both frames and from the impacts between them.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,8 @@ struct ShutterPaths {
     double open = 0.0;                         ///< in s
     double close = 0.0;                        ///< in s
     std::vector<std::vector<PathNode>> nodes;  ///< for each point of the frame; empty without a shutter
-    std::vector<double> born;                  ///< birth time of each particle in s, if later than `open`; otherwise
-                                               ///< `open`
+    std::vector<double> born;                  ///< start of each path in s: the particle's birth time or `open`,
+                                               ///< whichever is later
 
     [[nodiscard]] bool empty() const { return nodes.empty(); }
 };
@@ -34,14 +34,14 @@ struct Moment {
     ShutterPaths paths;
 };
 
-/// The impact of a particle that is nearest in time.
+/// The impact of one particle that is nearest to a given time.
 struct NearImpact {
-    double away = 0.0;   ///< time distance, before or after, in s
+    double away = 0.0;   ///< time between the impact and the given time, in s, not negative
     double speed = 0.0;  ///< normal speed before the impact, in m/s; 0: no impact
     Vec3 normal;         ///< unit normal, away from the surface
 };
 
-/// Reader of a run. Loads frames and contact files on demand and caches the ones near the last requested time.
+/// Reader of a run. Loads frames and contact files on demand. Caches the files near the last requested time.
 class RunTimeline {
 public:
     explicit RunTimeline(const RunFolder& folder);
@@ -53,10 +53,12 @@ public:
     [[nodiscard]] double go_to(std::uint64_t step);
     /// Returns the time from the first frame to the second, in s. It is 0 if there is only one frame.
     [[nodiscard]] double spacing() { return files_.size() < 2 ? 0.0 : time_of(1) - time_of(0); }
-    /// Returns the run at a time. At the time of a frame, it is exactly the frame's state. `shutter` is the duration
-    /// of the paths before that time in s; 0 gives no paths. Throws InputError for invalid files.
+    /// Returns the run at a time. At the time of a frame, the result is exactly the frame's state. `shutter` is the
+    /// duration, in s, of the returned paths, which end at the time; 0 gives no paths. Throws InputError for invalid
+    /// files.
     [[nodiscard]] Moment at(double time, double shutter);
-    /// Returns the nearest impact of each particle, if it is within `reach` (s) of the time.
+    /// Returns the impact of each particle that is nearest to the time. Ignores impacts that are more than `reach`, in
+    /// s, before or after the time.
     [[nodiscard]] std::vector<NearImpact> impacts_near(const VtkPolyData& frame, double time, double reach);
     /// Returns true if the impacts between frames are recorded.
     [[nodiscard]] bool knows_impacts() const { return !contacts_.empty(); }
@@ -74,13 +76,13 @@ private:
     void add_frame_nodes(std::size_t first, std::size_t last, const Rows& rows, ShutterPaths& paths);
     void add_impact_nodes(std::size_t first, std::size_t last, const Rows& rows, ShutterPaths& paths);
     void set_births(std::size_t last, const Rows& rows, ShutterPaths& paths);
-    // Removes particles without any record at or after the time, because they ended before it.
+    // Removes particles without any record at or after the time, because these particles ended before.
     static void drop_ended(double time, Rows& rows, ShutterPaths& paths);
     [[nodiscard]] VtkPolyData mixed_frame(std::size_t k, double time, const Rows& rows, const ShutterPaths& paths);
     void add_moving(std::size_t k, bool exact, double time, Moment& moment);
 
     std::vector<FrameFile> files_;
-    std::map<std::uint64_t, std::filesystem::path> contacts_;  // by their step
+    std::map<std::uint64_t, std::filesystem::path> contacts_;  // by the step in the file name
     std::map<std::size_t, std::shared_ptr<const VtkPolyData>> loaded_;
     std::map<std::uint64_t, std::shared_ptr<const VtkPolyData>> loaded_contacts_;
     std::size_t current_ = 0;

@@ -1,4 +1,5 @@
-// Rotation of a run's particles at any time: a random initial rotation, integrated with the spins of the frames.
+// Rotation of a run's particles at any time. The rotation starts at a random value and is integrated with the spins in
+// the frames.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +17,7 @@
 
 namespace ricochet::cli {
 
-/// Rotations of particles. Frames are read only once if the requested times increase. The results do not depend on
+/// Rotations of particles. If the requested times increase, each frame is read only once. The results do not depend on
 /// earlier requests.
 class RunTurning {
 public:

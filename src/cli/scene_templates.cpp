@@ -16,11 +16,11 @@ namespace {
 
 constexpr double kGravity = 9.81;
 
-// Frames of every scene.
+// Number of frames of every scene.
 constexpr int kFrames = 150;
 
-// Time steps of a scene whose spheres meet. In a hopper, spheres overlap by 0.11 radii with 300, by 0.022 with 1200 and
-// by 0.003 with these, which `--verify` accepts.
+// Number of time steps of a scene with contacts between spheres. In a hopper, spheres overlap by 0.11 radii with 300
+// steps and by 0.022 radii with 1200 steps. With 2400 steps they overlap by 0.003 radii, which `--verify` accepts.
 constexpr int kContactSteps = 2400;
 
 // Lengths and times of a scene.
@@ -31,8 +31,8 @@ struct Fit {
     double spread;  // radius of the mesh about the vertical axis, in m
     double ground;  // height of the ground, in m
     double top;     // top of the mesh, in m
-    double fall;    // time to fall by the diagonal, in s
-    double grid;    // rounding unit of lengths, in m
+    double fall;    // time of a free fall over the diagonal, in s
+    double grid;    // unit to which coordinates are rounded, in m
 };
 
 Fit fit_to(const Box3& bounds) {
@@ -48,7 +48,7 @@ Fit fit_to(const Box3& bounds) {
     return fit;
 }
 
-// Formats a size, rate or time with two digits, because users may want to change it.
+// Formats a size, rate or time with two significant digits, so that users can easily change it.
 std::string about(double value) { return fmt::format("{:.2g}", value); }
 // Formats an integer with two significant digits.
 std::string whole(double value) {
@@ -73,7 +73,8 @@ struct Part {
     std::string surface;     // the mesh's material
     double duration;         // s
     int steps = 300;         // time steps in the duration, a multiple of kFrames
-    double height;           // height above the mesh that the picture and the bounds include, relative to its diagonal
+    double height;           // height above the mesh that the picture and the bounds include, relative to the mesh's
+                             // diagonal
     bool has_box = false;    // a box around the mesh
     bool has_gravity = true;
 };
@@ -233,7 +234,7 @@ Part part_of(SceneTemplate kind, const Fit& fit, bool closed) {
     return rain(fit);
 }
 
-// Makes the container transparent, because it would hide the gas.
+// Makes the container transparent, because an opaque container would hide the gas.
 constexpr const char* kGlass = R"(, "looks": {"glass": true})";
 
 std::string colliders_text(const FittedMesh& mesh, const Fit& fit, const Part& part) {
@@ -263,7 +264,7 @@ std::string camera_text(const Fit& fit, const Part& part) {
     constexpr double kHalfAngle = 0.5 * kFieldOfView * 3.14159265358979323846 / 180.0;
     const double extra = part.height * fit.length;
     const Vec3 target{fit.center.x, fit.center.y, fit.center.z + 0.35 * extra};
-    // The view must contain the circumscribed ball of a box, because of its corners.
+    // The view must contain the corners of a box. It therefore contains the circumscribed sphere of the box.
     const double reach = part.has_box ? 0.5 * length(box_size(fit)) : (0.5 * fit.length + 0.35 * extra) * 0.95;
     const double distance = reach / std::sin(kHalfAngle);
     const Vec3 direction = normalized(Vec3{0.45, -0.8, 0.38});

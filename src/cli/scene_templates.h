@@ -20,10 +20,10 @@ enum class SceneTemplate { rain, debris, sparks, gas, fountain };
 struct FittedMesh {
     std::string file;       ///< path as written in the scene
     Box3 bounds;            ///< bounding box in the scene, in m; not empty
-    std::string up;         ///< axis of the file that points up, "y" or "z"; empty: default of its format
-    std::string format_up;  ///< default of its format
+    std::string up;         ///< axis of the file that points up, "y" or "z"; empty: same as format_up
+    std::string format_up;  ///< axis that points up by default in the file's format
     double scale = 0.0;     ///< length of the file's unit, in m; 0: not stated, metres assumed
-    bool closed = false;    ///< true if its topology lets a gas fill it
+    bool closed = false;    ///< true if the mesh encloses a volume that a gas can fill
 };
 
 /// Returns the text of a scene file with the mesh, a ground (except for a gas), emitter and camera. Sizes and times

@@ -22,7 +22,7 @@ namespace ricochet::cli {
 namespace {
 
 constexpr std::uint64_t kNobody = std::numeric_limits<std::uint64_t>::max();
-/// Upper bound of the handled signals: SIGHUP, SIGINT and SIGTERM are below it.
+/// Upper bound of the numbers of the handled signals SIGHUP, SIGINT and SIGTERM.
 constexpr std::size_t kSignals = 32;
 static_assert(SIGHUP < kSignals && SIGINT < kSignals && SIGTERM < kSignals);
 
@@ -55,7 +55,8 @@ RunResources RunResources::of_this_process() {
 
 SharedRun::SharedRun(With with) {
     if (with == With::nobody) return;
-    // Silent until the ranks have joined, because an earlier failure occurs on all of them.
+    // Other ranks than the first are silent until the ranks have joined, because an earlier failure occurs on every
+    // rank.
     be_silent(mpi::launch_rank() > 0);
     ranks_ = mpi::join();
     if (ranks_ && ranks_->size() < 2) ranks_.reset(), mpi::agree_to_end();
@@ -71,7 +72,7 @@ int SharedRun::threads_for(int wanted) const {
     return std::max(1, thread_count() / static_cast<int>(neighbours_));
 }
 
-// Springs are rejected, because the particles of one process do not determine which springs are lost.
+// Springs are rejected, because one process cannot tell from its own particles which springs have lost an end.
 void SharedRun::require_shareable(const SceneDescription& scene) const {
     if (!ranks_ || !scene.output.pieces || scene.setup.springs.empty()) return;
     throw InputError(fmt::format(
@@ -90,14 +91,15 @@ std::optional<int> SharedRun::together(const std::function<void()>& work) const 
     } catch (...) {
         error = std::current_exception();
     }
-    // Smallest rank that failed, combined with its exit code.
+    // The rank and the exit code of this process, if its work failed. The minimum over all ranks finds the first failed
+    // rank.
     const std::uint64_t mine = error ? 256 * ranks_->rank() + static_cast<std::uint64_t>(exit_code_of(error)) : kNobody;
     std::array<std::uint64_t, 1> first{mine};
     ranks_->least(first);
     if (first[0] == kNobody) return std::nullopt;
     std::array<std::uint64_t, 1> failed{error ? 1U : 0U};
     ranks_->sum(failed);
-    if (failed[0] == ranks_->size()) speak_as({});  // the error is common to all ranks
+    if (failed[0] == ranks_->size()) speak_as({});  // all ranks failed, so the message names no rank
     end();
     if (error && mine == first[0]) std::rethrow_exception(error);
     return static_cast<int>(first[0] % 256);
@@ -123,7 +125,7 @@ std::optional<int> SharedRun::require_alike(std::span<const std::uint64_t> value
 
 RunCounts SharedRun::after_step(const RunCounts& here) const {
     if (!ranks_) return here;
-    // Number of processes per received signal, followed by the counts.
+    // Element s is the number of processes that received signal s. The last two elements are the counts.
     std::array<std::uint64_t, kSignals + 2> sums{};
     if (const int signal = InterruptGuard::signal(); signal > 0) ++sums.at(static_cast<std::size_t>(signal));
     sums[kSignals] = here.particles;

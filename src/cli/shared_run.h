@@ -26,33 +26,35 @@ struct RunResources {
 };
 
 /// The processes of a run; usually one. Only one object can exist at a time. All processes must make the same calls in
-/// the same order, except calls marked as local.
+/// the same order. Only functions whose comment ends with "Local." may be called by a single process.
 class SharedRun {
 public:
     enum class With {
         nobody,    ///< this process runs its scene alone
         launched,  ///< joins the processes that mpirun started, if any; only once per process
     };
-    /// Joins the other processes. All but the first one are silent from now on. Throws InputError if there are others
-    /// and the program cannot join them.
+    /// Joins the other processes. All processes except the first print nothing from now on. Throws InputError if other
+    /// processes exist and the program cannot join them.
     explicit SharedRun(With with);
-    /// Ends the silence, so that this process can report an error in flight.
+    /// Allows this process to print again, so that it can report an exception that has ended its work.
     ~SharedRun();
     SharedRun(const SharedRun&) = delete;
     SharedRun& operator=(const SharedRun&) = delete;
 
-    /// Returns null for one process.
+    /// Returns the processes of the run, or null for a single process.
     [[nodiscard]] const std::shared_ptr<Ranks>& ranks() const { return ranks_; }
     /// Returns true if this process writes files and reports.
     [[nodiscard]] bool talks() const { return !ranks_ || ranks_->rank() == 0; }
-    /// Returns the number of threads for this process, or 0 for the whole machine. `wanted` is 0 by default. Local.
+    /// Returns the number of threads for this process, or 0 for the whole machine. `wanted` is the number of threads
+    /// that the user asked for, or 0. Local.
     [[nodiscard]] int threads_for(int wanted) const;
 
     /// Throws InputError for a scene that only a single process can run. Local.
     void require_shareable(const SceneDescription& scene) const;
 
-    /// Runs local work that can fail on some processes. If it fails on any process, all end. The first failed process
-    /// throws its error, and the others return the exit code. Returns nothing if all can continue.
+    /// Runs work of this process that can fail on some processes. If the work fails on any process, all processes end.
+    /// The first failed process throws its error. The other processes return its exit code. Returns nothing if all can
+    /// continue.
     [[nodiscard]] std::optional<int> together(const std::function<void()>& work) const;
     /// Checks that numbers are equal on all processes, such as the fingerprints of the scene and of the checkpoint.
     /// Fails like together().
@@ -76,8 +78,8 @@ private:
     mutable int agreed_signal_ = 0;
 };
 
-/// Handles an error that occurs before a run has joined the other processes, such as an unknown option. Joins them and
-/// fails like SharedRun::together(). Returns nothing if this process has already joined or is alone.
+/// Handles an error that occurs before a run has joined the other processes, such as an unknown option. Joins the other
+/// processes and fails like SharedRun::together(). Returns nothing if this process has already joined or is alone.
 [[nodiscard]] std::optional<int> fail_together(const std::exception_ptr& error);
 
 }  // namespace ricochet::cli

@@ -30,7 +30,8 @@ const std::string& speaker() { return speaker_name; }
 void reserve_standard_streams() {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
         if (::fcntl(stream, F_GETFD) >= 0) continue;
-        (void)::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);  // takes the lowest free number
+        (void)::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);  // open() takes the lowest free
+                                                                                  // number, which is `stream`
     }
 }
 
@@ -55,7 +56,7 @@ namespace {
 constexpr std::string_view kErase = "\r\033[K";
 constexpr std::chrono::seconds kPipeInterval{10};
 
-std::atomic<bool> is_line_shown = false;  // on the terminal, by any ProgressLine
+std::atomic<bool> is_line_shown = false;  // true while any ProgressLine shows text on the terminal
 
 }  // namespace
 

@@ -27,12 +27,12 @@ namespace ricochet::cli {
 void be_silent(bool silent);
 [[nodiscard]] bool is_silent();
 
-/// Sets the name in error messages, for errors of single processes: `rank 3 on node17`. The default is empty, for a
-/// single process.
+/// Sets the name of this process in error messages, such as `rank 3 on node17`. The name is empty by default, for runs
+/// with a single process.
 void speak_as(std::string name);
 [[nodiscard]] const std::string& speaker();
 
-/// Type in which print() formats an argument.
+/// Type to which print() converts an argument before it formats it.
 template <class T>
 using Printed = std::conditional_t<std::is_convertible_v<const T&, std::string_view>, std::string, std::decay_t<T>>;
 
@@ -45,7 +45,8 @@ template <class T>
 }
 
 /// Prints like fmt::print(). All texts among the arguments pass through printable(), because they can come from
-/// untrusted files. Output that the file rejects is lost; std::ferror() reports it. Prints nothing while be_silent()
+/// untrusted files. If writing to the file fails, the output is lost and std::ferror() reports the failure. Prints
+/// nothing while be_silent()
 /// is active.
 template <class... Args>
 void print(std::FILE* file, fmt::format_string<Printed<Args>...> format, const Args&... args) {
@@ -57,8 +58,8 @@ void print(fmt::format_string<Printed<Args>...> format, const Args&... args) {
     cli::print(stdout, format, args...);
 }
 
-/// Opens closed standard streams. Otherwise a file of ours could get their numbers, and a message would be written
-/// into it. Reading from and writing to them still fails.
+/// Opens closed standard streams on /dev/null. Otherwise a file could get the number of a standard stream, and messages
+/// would be written into this file. Reading from and writing to these streams still fails.
 void reserve_standard_streams();
 
 // Tables on standard output.
@@ -82,7 +83,7 @@ enum class Progress {
 /// Progress on stderr. Safe to use from several threads.
 class ProgressLine {
 public:
-    /// With `quiet`, nothing is shown, even on a terminal, unless progress is always shown.
+    /// With `quiet`, nothing is shown, even on a terminal, unless `progress` is `always`.
     explicit ProgressLine(bool quiet, Progress progress = Progress::automatic);
     /// Erases the line.
     ~ProgressLine();
@@ -93,7 +94,7 @@ public:
     [[nodiscard]] bool due();
     void show(const std::string& text);
     void erase();
-    /// Erases the shown line, if any. Safe in a signal handler before the process ends.
+    /// Erases the shown line, if any. A signal handler may call this function before it ends the process.
     static void erase_at_the_end() noexcept;
 
 private:
@@ -113,7 +114,7 @@ private:
 inline constexpr std::size_t kMostListedViolations = 20;
 
 /// Returns one line per violation with particle, position, time, collider and triangle, up to kMostListedViolations. A
-/// last line has the number of unlisted violations. `violations` are the first of `count` violations.
+/// last line has the number of unlisted violations. `violations` contains the first of the `count` violations.
 [[nodiscard]] std::vector<std::string> violation_lines(std::span<const Violation> violations, std::uint64_t count,
                                                        const std::vector<ColliderDescription>& colliders);
 

@@ -21,7 +21,7 @@ namespace {
 
 // Raw arguments of the command line.
 struct ViewArguments {
-    cli::SceneArguments scene;  // the file can be a folder
+    cli::SceneArguments scene;  // `file` can also be the folder of a run
     std::string output;
     std::string run_output;
     std::string color_by;
@@ -57,8 +57,8 @@ std::filesystem::path page_path(const ViewArguments& arguments, bool is_run) {
     return folder += ".html";
 }
 
-// Returns the folder of the run to show: the given folder, or that of a new run. Returns an empty path if a signal
-// ended the run.
+// Returns the folder of the run to show. This is the given folder, or the folder of a new run. Returns an empty path if
+// a signal ended the run.
 std::filesystem::path run_folder_of(const ViewArguments& arguments, bool is_run, int& exit_code) {
     if (is_run) {
         if (!arguments.scene.overrides.empty())

@@ -10,26 +10,26 @@
 namespace ricochet::cli {
 namespace {
 
-/// Number of moves per ball. Each move takes the ball off the nearest wall, or halves a move that another wall blocks.
-/// Corners and gaps need several moves.
+/// Largest number of moves per ball. Each move takes the ball off the nearest wall, or halves the previous move if a
+/// wall blocked it. Corners and gaps need several moves.
 constexpr int kMoves = 16;
-/// Allowed penetration of a ball through a wall, relative to its radius. It is less than a pixel.
+/// Allowed penetration of a ball through a wall, relative to the ball's radius. The penetration is less than a pixel.
 constexpr double kPoke = 0.01;
 
 }  // namespace
 
 /// The balls that still penetrate walls, with their candidate positions.
 struct WallClearance::Search {
-    std::vector<std::size_t> ball;      // index in the list
+    std::vector<std::size_t> ball;      // index of the ball in DrawnBalls
     std::vector<Vec3> start;            // position of the particle, in m
     std::vector<Vec3> before;           // position before the last move, in m
     std::vector<Vec3> center;           // current position, in m
     std::vector<double> distance;       // distance to the nearest wall, in m
     std::vector<Vec3> nearest;          // nearest point of the wall, in m
-    std::vector<std::uint8_t> blocked;  // a wall is between the particle and the current position
+    std::vector<std::uint8_t> blocked;  // 1 if a wall is between the particle and the current position
     double largest = 0.0;               // largest radius, in m
 
-    /// Keeps the given balls.
+    /// Removes all balls except the given ones.
     void keep(const std::vector<std::size_t>& kept) {
         const auto choose = [&kept](auto& list) {
             for (std::size_t k = 0; k < kept.size(); ++k) list[k] = list[kept[k]];

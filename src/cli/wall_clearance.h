@@ -28,8 +28,8 @@ public:
     void add(TriangleMesh mesh);
 
     /// Moves balls that are larger than their particles perpendicularly away from the walls. Each ball stays on its
-    /// particle's side. If a ball fits nowhere nearby, it gets the position with the largest clearance that was found.
-    /// It then shrinks, but never below its particle's radius.
+    /// particle's side. If a ball does not fit at any tested position, it gets the tested position with the largest
+    /// clearance. The ball then shrinks to this clearance, but never below its particle's radius.
     void clear(const DrawnBalls& balls) const;
 
 private:

@@ -1,7 +1,7 @@
 """Builds the Python package with CMake: a PEP 517 backend that needs only packages of Debian 12.
 
-The compiled module is built in build/, the folder of scripts/demo and scripts/test, so that no file is compiled twice.
-For an interpreter of another version than the system's it is built in a separate folder.
+The compiled module is built in build/. scripts/demo and scripts/test use the same folder, so that no file is compiled
+twice. If the interpreter is not of the system's version, the module is built in a separate folder.
 """
 
 import base64
@@ -36,7 +36,7 @@ def _abi(executable):
 
 
 def _folder():
-    """Returns the build folder and the interpreter to build for."""
+    """Returns the build folder, and the path of the interpreter for which the module is built."""
     system = "/usr/bin/python3"
     if _abi(system) == sysconfig.get_config_var("SOABI"):
         return ROOT / "build", system
@@ -77,7 +77,7 @@ def _wheel_text():
 
 
 class _Wheel:
-    """Zip file with a record of its members."""
+    """A wheel: a zip file with a RECORD of its members."""
 
     def __init__(self, path):
         self._zip = zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED)

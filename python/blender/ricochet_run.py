@@ -1,9 +1,9 @@
 """Blender add-on: File > Import > Ricochet run.
 
-Opens the folder that `ricochet run` has written, at the frame of the time line. Particles become spheres; radius,
-colour, ids and every other array of the frames are attributes. Colliders and the camera are imported too, moving ones
-with their motion. The files are read while the time line advances, so do not move the folder. Needs Blender 3.4 or
-newer.
+Imports the folder that `ricochet run` has written. The current frame of the time line selects the frame of the run.
+Particles become spheres. Radius, colour, ids and every other array of the frames become attributes. Colliders and the
+camera are imported with their motion. The files are read while the time line advances, so do not move the folder. Needs
+Blender 3.4 or newer.
 """
 
 import json
@@ -59,8 +59,8 @@ def _array(data, at, kind, components, path):
 
 
 def own_file(folder, name):
-    """Returns the path of a regular file in the folder, and raises ValueError for others. An untrusted run.json may
-    name files elsewhere, links and pipes."""
+    """Returns the path of a regular file in the folder. Raises ValueError for other files, because an untrusted
+    run.json may name files in other folders, links and pipes."""
     path = os.path.join(folder, name)
     is_own = os.path.dirname(os.path.realpath(path)) == os.path.realpath(folder)
     if name != os.path.basename(name) or not is_own or not os.path.isfile(path):
@@ -69,7 +69,7 @@ def own_file(folder, name):
 
 
 def read_frame(path):
-    """Returns read_vtp() of a frame. The pieces of a .pvtp frame are joined, in the order of the ids."""
+    """Returns the arrays of a frame like read_vtp(). Joins the pieces of a .pvtp frame, in the order of the ids."""
     if not path.endswith(".pvtp"):
         return read_vtp(path)
     with open(path, encoding="utf-8") as file:
@@ -101,7 +101,7 @@ def _set_attribute(mesh, name, values, domain):
     if vector and values.shape[1] != 3:
         return
     kind = "FLOAT_VECTOR" if vector else "INT" if values.dtype.kind in "iu" else "FLOAT"
-    if name == "color" and vector:  # as a colour, for shaders and the viewport
+    if name == "color" and vector:  # stored as a colour attribute, which shaders and the viewport use
         attribute = mesh.attributes.new(name, "FLOAT_COLOR", domain)
         opaque = np.ones((len(values), 4), np.float32)
         opaque[:, :3] = values
@@ -113,7 +113,7 @@ def _set_attribute(mesh, name, values, domain):
 
 
 def fill_particles(mesh, path):
-    """Replaces the mesh by the particles of the frame, one vertex each."""
+    """Replaces the content of the mesh by one vertex for each particle of the frame."""
     sections = read_frame(path)
     points = sections["Points"]["Points"].reshape(-1, 3)
     mesh.clear_geometry()
@@ -132,7 +132,7 @@ def fill_particles(mesh, path):
 
 
 def fill_surface(mesh, path):
-    """Replaces the mesh by the triangles of the file, with its arrays of triangles."""
+    """Replaces the content of the mesh by the triangles of the file and their arrays."""
     sections = read_vtp(path)
     mesh.clear_geometry()
     points = sections["Points"]["Points"].reshape(-1, 3)
@@ -182,9 +182,9 @@ def _material(name, color, from_attribute=False):
 
 
 def _point_nodes(material):
-    """Returns nodes that show vertices as spheres of the radius `shown_radius`.
+    """Returns geometry nodes that draw a sphere at each vertex, with the radius in the attribute `shown_radius`.
 
-    A point cloud is not possible, because Cycles of Blender 3.4 reads no colours of its points.
+    A point cloud cannot be used, because Cycles in Blender 3.4 ignores the colours of its points.
     """
     tree = bpy.data.node_groups.new("Ricochet particles", "GeometryNodeTree")
     if hasattr(tree, "interface"):  # Blender 4
@@ -251,8 +251,8 @@ def _add_colliders(context, folder, run):
 
 
 def import_run(context, path, point_radius=0.0):
-    """Imports the run of a run.json or its folder. point_radius: radius of particles without a size, in m; 0 chooses a
-    visible one."""
+    """Imports a run. path: the run's folder, or the run.json in it. point_radius: radius of particles without a size,
+    in m; 0 chooses a visible radius."""
     folder = os.path.abspath(path if os.path.isdir(path) else os.path.dirname(path))
     with open(own_file(folder, "run.json"), encoding="utf-8") as file:
         run = json.load(file)

@@ -1,10 +1,11 @@
-"""Draws a picture of a run with ParaView: the steps of "ParaView" in docs/output-files.md, as a script.
+"""Draws a picture of a run with ParaView. The script does the steps of the section "ParaView" in docs/output-files.md.
 
     pvbatch python/paraview/run_picture.py DIR picture.png [--time SECONDS] [--color ARRAY] [--size WIDTH HEIGHT]
 
-DIR is the folder of a run (`ricochet run ... --output DIR`). Particles are drawn as spheres of their `size`, else of
-their `radius`. Points get a two-hundredth of the run's width. --color is an array of the frames (velocity). The camera
-is the scene's if it has one. Without --time the last frame is drawn.
+DIR is the folder of a run (`ricochet run ... --output DIR`). Particles are drawn as spheres with the radius in the
+array `size`, or in `radius` if the frames have no `size`. Points get a two-hundredth of the run's width as radius.
+--color is the name of an array of the frames; the default is velocity. The scene's camera is used, if the scene has
+one. Without --time, the last frame is drawn.
 """
 
 import argparse
@@ -29,7 +30,7 @@ def read_arguments():
 
 
 def radius_array(particles):
-    """Returns the name of the array with the sizes of particles; None if all are points."""
+    """Returns the name of the array with the sizes of particles, or None if all particles are points."""
     arrays = particles.PointData
     for name in ("size", "radius"):
         if name in arrays.keys() and arrays[name].GetRange()[1] > 0.0:
@@ -60,8 +61,8 @@ def show_particles(particles, view, color):
 
 
 def show_colliders(run, view):
-    """Shows each collider from its file; all moving ones are in one file. Planes are outlines, because their squares
-    would hide the rest."""
+    """Shows the colliders. Each collider at rest has its own file. One file contains all moving colliders. Planes are
+    drawn as outlines, because filled planes would hide the other objects."""
     colliders = json.load(open(os.path.join(run, "run.json")))["colliders"]
     files = [(collider["file"], collider["type"]) for collider in colliders if not collider.get("moves")]
     files.append(("moving.pvd", "mesh"))

@@ -1,7 +1,7 @@
-"""Ricochet: particles against triangle meshes, exactly.
+"""Ricochet: exact collisions of particles with triangle meshes.
 
 :class:`Mesh` has exact queries on meshes. :class:`Simulation` runs simulations from a scene file, a dictionary, or the
-objects of :mod:`ricochet.scene`. :mod:`ricochet.trimesh` is a drop-in for trimesh's ray interface.
+objects of :mod:`ricochet.scene`. :mod:`ricochet.trimesh` is a drop-in replacement for trimesh's ray interface.
 """
 
 from __future__ import annotations

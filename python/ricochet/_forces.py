@@ -1,4 +1,4 @@
-"""Forces on all particles at once."""
+"""Compiled forces, which compute the force on all particles in one call."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class CompiledForce:
         return int(self._callback.address)
 
     def _call(self, time: float, position: Any, velocity: Any, mass: Any, radius: Any) -> None:
-        """Calls the force from Python, which sees exceptions of the function."""
+        """Calls the force from Python, so that exceptions of the function reach the caller."""
         self._compiled(time, position, velocity, mass, radius, np.zeros_like(position))
 
     def __reduce__(self) -> Any:
@@ -37,12 +37,13 @@ class CompiledForce:
 
 
 def compiled_force(function: Callable[..., None], check_indices: bool = True) -> CompiledForce:
-    """Compiles a force with Numba, to be called without the interpreter's lock.
+    """Compiles a force with Numba. Simulations call the result without the interpreter's lock.
 
     The function gets ``(time, position, velocity, mass, radius, force)`` and writes newtons into the rows of ``force``,
-    which are zero. The other arrays are read-only. It must be pure: equal input gives equal forces. An exception ends
-    the step, as with a function that is not compiled. An index beyond an array is an IndexError. With
-    check_indices=False such an index reads or writes foreign memory instead, and the function may be faster.
+    which are zero. The other arrays are read-only. The function must be pure: equal input gives equal forces. An
+    exception ends the step, as with a function that is not compiled. An index out of bounds raises IndexError. With
+    check_indices=False, the function may be faster, but an index out of bounds reads or writes memory outside the
+    array.
 
     Raises :class:`ricochet.InputError` if Numba cannot compile it.
     """
@@ -54,7 +55,7 @@ def _compile(function: Callable[..., None], check_indices: bool) -> Any:
         numba = importlib.import_module("numba")
     except ImportError as error:
         raise InputError(f"compiled_force: Numba cannot be imported ({error}); install python3-numba") from None
-    function = getattr(function, "py_func", function)  # result of numba.njit
+    function = getattr(function, "py_func", function)  # the Python function, if the argument is a result of numba.njit
     name = getattr(function, "__name__", type(function).__name__)
     _require_arguments(function, name)
     try:
@@ -67,8 +68,8 @@ def _compile(function: Callable[..., None], check_indices: bool) -> Any:
 
 
 def _compiled(numba: Any, function: Callable[..., None], check_indices: bool) -> Any:
-    """Returns the function for callers from Python and for callers from C++. The latter returns 0 after an exception.
-    All arrays except the last are read-only."""
+    """Returns two compiled functions: one for calls from Python and one for calls from C++. The second function returns
+    0 after an exception. All arrays except the last are read-only."""
     types = numba.types
 
     def array(axes: int, readonly: bool = True) -> Any:
@@ -118,7 +119,7 @@ def _require_arguments(function: Any, name: str) -> None:
 
 
 def _reason(text: str, function: Any) -> str:
-    """Returns Numba's message in one line: the fault, and the line of the source."""
+    """Returns Numba's message on one line, with the error and the line of the source."""
     text = re.sub(r"\x1b\[[0-9;]*m", "", text)
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     cause = next((line for line in lines if not line.startswith("Failed in")), "it does not say why")

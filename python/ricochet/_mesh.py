@@ -16,7 +16,8 @@ __all__ = ["Mesh", "as_mesh"]
 
 Integers = npt.NDArray[np.int64]
 
-# Names of meshio's surface cells. "polygon" cells have any number of corners; older versions name them like "polygon7".
+# Names of meshio's surface cells. "polygon" cells have any number of corners. Older versions append this number, as in
+# "polygon7".
 _SURFACE_CELLS = re.compile(r"(triangle|quad|polygon|VTK_LAGRANGE_TRIANGLE|VTK_LAGRANGE_QUADRILATERAL)\d*")
 
 
@@ -24,10 +25,10 @@ def as_mesh(source: Any, ignore: Sequence[str] = ()) -> Mesh:
     """Returns a :class:`Mesh` from a mesh, a file's name, or anything with `vertices` and `faces` (trimesh) or `points`
     and `cells` (meshio).
 
-    All surface cells of meshio are taken. Polygons are cut into triangles inside their outline. Cells with nodes on
-    their edges are polygons through these nodes; a node in their middle is a corner of all their triangles. Other
-    cells, such as "line" and "tetra", are an :class:`InputError`, unless `ignore` names their types: then they are left
-    out.
+    The result contains all surface cells of meshio. Polygons are cut into triangles inside their outline. A cell with
+    nodes on its edges is a polygon through these nodes. A node in the middle of a cell is a corner of all triangles of
+    the cell. Other cells, such as "line" and "tetra", raise :class:`InputError`. Types of cells that `ignore` names are
+    left out instead.
     """
     if isinstance(source, Mesh):
         return source
@@ -50,7 +51,8 @@ Blocks = List[Tuple[str, Any]]
 
 
 def _blocks(source: Any) -> Optional[Blocks]:
-    """Returns meshio's blocks of cells in their order, or blocks of a dictionary by type; None for other objects."""
+    """Returns the blocks of cells of a meshio object in their order. The blocks can also be a dictionary by type.
+    Returns None for other objects."""
     cells = getattr(source, "cells", None)
     if isinstance(cells, (list, tuple)) and all(hasattr(block, "type") and hasattr(block, "data") for block in cells):
         return [(str(block.type), block.data) for block in cells]
@@ -98,10 +100,10 @@ def _cut(points: Any, offsets: Any, corners: Any) -> Any:
 
 def _outline(kind: str, count: int) -> Tuple[List[int], Optional[int]]:
     """Returns the nodes around a cell in order, and its middle node if there is exactly one. Cells of second order and
-    triangles of third order have one. Several inner nodes of higher orders are left out.
+    triangles of third order have one middle node. Cells of higher orders have several inner nodes, which are left out.
 
-    meshio lists corners first, then the nodes on each edge, then inner ones. VTK lists the nodes on a quad's third and
-    fourth edge the other way around.
+    meshio lists corners first, then the nodes on each edge, then inner nodes. VTK lists the nodes on the third and
+    fourth edge of a quad in reverse order.
     """
     sides = 3 if "triangle" in kind.lower() else 4
     on_edge = _nodes_on_edge(sides, count)
@@ -118,10 +120,10 @@ def _outline(kind: str, count: int) -> Tuple[List[int], Optional[int]]:
 
 
 def _nodes_on_edge(sides: int, count: int) -> Optional[int]:
-    """Returns how many nodes each edge has between its ends; None if no cell has `count` nodes."""
-    if sides == 3 and count == 7:  # with a node in the middle
+    """Returns the number of nodes on each edge between its ends. Returns None if no type of cell has `count` nodes."""
+    if sides == 3 and count == 7:  # second order, with a node in the middle
         return 1
-    if sides == 4 and count == 8:  # without one
+    if sides == 4 and count == 8:  # second order, without a node in the middle
         return 1
     for order in range(1, count):
         if count == ((order + 1) * (order + 2) // 2 if sides == 3 else (order + 1) ** 2):
@@ -129,7 +131,7 @@ def _nodes_on_edge(sides: int, count: int) -> Optional[int]:
     return None
 
 
-# Key in a mesh's dictionary for the kinds of names that a file has set.
+# Key in a mesh's `__dict__`. The value is the set of the kinds of names that come from a file.
 _OF_FILE = "_names_of_file"
 
 
@@ -141,7 +143,8 @@ def _set_names(mesh: Mesh, count: int, kind: str, names: Any) -> None:
 
 
 def _take_names(mesh: Mesh, numbers: Any, materials: List[str], groups: List[str], objects: List[str]) -> None:
-    """Gives each triangle the names of the combination with its number. Names of a file are not checked."""
+    """Sets the names of each triangle. numbers[t] selects the combination of names for triangle t. Names from a file
+    are not checked."""
     taken = set()
     for kind, names in (("materials", materials), ("groups", groups), ("objects", objects)):
         if any(names):
@@ -152,17 +155,19 @@ def _take_names(mesh: Mesh, numbers: Any, materials: List[str], groups: List[str
     mesh.__dict__[_OF_FILE] = frozenset(taken)
 
 
-# Blanks, line breaks and marks of OBJ files at places where a reader does not give them back as parts of a name.
+# Matches characters that an OBJ reader would not return as part of a name: line breaks, outer blanks, comment marks and
+# a final backslash.
 _NOT_IN_A_LINE = re.compile(r"[\n\r\0]|^[ \t]|[ \t]$|(^|[ \t])#|\\$")
 
 
 def _is_writable(name: str) -> bool:
-    """Returns whether a line of an OBJ file gives a name back as it is."""
+    """Returns True if a name that is written to a line of an OBJ file is read back unchanged."""
     return _NOT_IN_A_LINE.search(name) is None
 
 
 def _names(names: Any, count: int, kind: str) -> Optional[npt.NDArray[np.str_]]:
-    """Returns names of triangles as a read-only array of texts. Each must fit into a line of an OBJ file."""
+    """Returns names of triangles as a read-only array of texts. Raises InputError for a name that _is_writable()
+    rejects."""
     if names is None:
         return None
     array = np.asarray(names)

@@ -13,10 +13,11 @@ Integers = npt.NDArray[np.int64]
 
 
 class Hits(NamedTuple):
-    """One entry for each query. Without a hit: triangle -1, distance infinite, point NaN.
+    """Results of queries, with one entry for each query. Without a hit, triangle is -1, distance is infinite and point
+    is NaN.
 
-    triangle: Index of the triangle; the smallest of several at the same point. Shape (n,).
-    distance: Metres from a ray's origin or from a point; of a sweep the fraction of its path, from 0 to 1. Shape (n,).
+    triangle: Index of the triangle; the smallest index if several triangles share the point. Shape (n,).
+    distance: Metres from a ray's origin or from a point; for sweeps the fraction of the path, from 0 to 1. Shape (n,).
     point: Position on the triangle, in metres. Shape (n, 3).
     """
 
@@ -26,10 +27,10 @@ class Hits(NamedTuple):
 
 
 class AllHits(NamedTuple):
-    """All hits of all rays, ray by ray, in the order along each. m is their number.
+    """All m hits of all rays. They are sorted by ray, and along each ray by distance.
 
     ray: Index of the ray. Shape (m,).
-    triangle: Index of the triangle; the smallest of several at the same point. Shape (m,).
+    triangle: Index of the triangle; the smallest index if several triangles share the point. Shape (m,).
     distance: Metres from the ray's origin. Shape (m,).
     point: Position on the triangle, in metres. Shape (m, 3).
     crossing: 1 if the ray leaves through the surface (along its normal), -1 if it enters, 0 if it touches. Shape (m,).
@@ -45,19 +46,19 @@ class AllHits(NamedTuple):
 
 
 class Particles(NamedTuple):
-    """The particles at the time of the access. Arrays are read-only and keep their values in later steps.
+    """The particles at the time of access. Arrays are read-only and keep their values when the simulation continues.
 
-    id: Number that a particle keeps. Shape (n,), like all fields except vectors.
+    id: Number of the particle, which never changes. Shape (n,), like all fields except vectors.
     position: Metres. Shape (n, 3).
     velocity: Metres per second. Shape (n, 3).
     spin: Angular velocity, in radians per second. Shape (n, 3).
     mass: Kilograms.
     radius: Metres; 0 for points.
     birth_time: Seconds.
-    lifetime: Seconds from birth to removal; infinite for particles that stay.
+    lifetime: Seconds from birth to removal; infinite for particles that are not removed.
     contacts: Number of impacts so far.
-    resting: Whether the particle rests on surfaces.
-    frozen: Whether the particle no longer moves, because its state left the range of the arithmetic.
+    resting: True if the particle rests on surfaces.
+    frozen: True if the particle no longer moves, because its state left the range of the arithmetic.
     """
 
     id: npt.NDArray[np.uint64]
@@ -74,11 +75,11 @@ class Particles(NamedTuple):
 
 
 class ForceInput(NamedTuple):
-    """Input of a force written in Python: the particles, in the order of the returned forces. Arrays are read-only
-    copies, which may be kept.
+    """Input of a force that is a Python function: the particles, in the order of the returned forces. Arrays are
+    read-only copies, so the function may store them.
 
     time: Seconds.
-    id: Number that a particle keeps. Shape (n,).
+    id: Number of the particle, which never changes. Shape (n,).
     position: Metres. Shape (n, 3).
     velocity: Metres per second. Shape (n, 3).
     mass: Kilograms. Shape (n,).
@@ -105,7 +106,7 @@ class TriangleTotals(NamedTuple):
 
 
 def _explain_fields(kind: Any) -> None:
-    """Gives the fields of a named tuple their texts from its docstring, for help()."""
+    """Sets the docstrings of a named tuple's fields from the docstring of the tuple, for help()."""
     for name, text in re.findall(r"^    (\w+): (.+)$", kind.__doc__, re.MULTILINE):
         getattr(kind, name).__doc__ = text
 
@@ -121,11 +122,11 @@ class Contacts(npt.NDArray[Any]):
 
     def __getitem__(self, key: Any) -> Any:
         found = super().__getitem__(key)
-        # A single field is an ordinary array.
+        # A single field is returned as an ordinary array.
         return found.view(np.ndarray) if isinstance(found, Contacts) and found.dtype.names is None else found
 
     def table(self) -> npt.NDArray[np.void]:
-        """Returns a structured array over the same memory with one number in each column."""
+        """Returns a structured array over the same memory, in which each column contains one number."""
         columns: Any = {"names": [], "formats": [], "offsets": [], "itemsize": self.dtype.itemsize}
         fields: Any = self.dtype.fields
         for name in self.dtype.names or ():
@@ -138,5 +139,6 @@ class Contacts(npt.NDArray[Any]):
 
     @property
     def _data(self) -> npt.NDArray[np.void]:
-        # pandas reads structured arrays through numpy.ma.getdata(), which uses this. It accepts no columns of vectors.
+        # pandas reads structured arrays through numpy.ma.getdata(), which uses this property. pandas accepts no columns
+        # of vectors.
         return self.table()

@@ -23,11 +23,11 @@ from ._results import ForceInput
 Force = Union[CompiledForce, Callable[[ForceInput], Any]]
 SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 
-# File name for messages about a scene that is not a file.
+# Name in messages about a scene that was not read from a file.
 _NAME = "scene"
-# Placeholder for the folder of mesh files while a scene is read.
+# Placeholder for the temporary folder of mesh files. It is replaced when the scene is read.
 _MESHES = "/ricochet-meshes"
-# Most levels of lists and dictionaries, equal to the limit of the tool.
+# Largest number of nested lists and dictionaries, equal to the limit of the tool.
 _DEEPEST = 64
 
 
@@ -35,9 +35,9 @@ class Simulation(_core.Simulation):
     """A running simulation.
 
     scene
-        A scene file's name; a dictionary with the keys of a scene file; or a :class:`ricochet.scene.Scene`. Paths in a
-        dictionary are relative to the working folder. A mesh may replace the name of a mesh file: a
-        :class:`ricochet.Mesh` or anything with vertices and faces.
+        Name of a scene file, dictionary with the keys of a scene file, or :class:`ricochet.scene.Scene`. Paths in a
+        dictionary are relative to the working folder. The name of a mesh file can be replaced by a
+        :class:`ricochet.Mesh`, or by any object with vertices and faces.
     overrides
         Changes like the tool's --set, such as ``{"simulation.time_step": 0.01}``.
     contacts
@@ -47,13 +47,13 @@ class Simulation(_core.Simulation):
 
     forces
         Forces in addition to the scene's. Each is a function or the result of :func:`ricochet.compiled_force`. A
-        function gets a :class:`ricochet.ForceInput` of all particles and returns forces in newtons, shape (n, 3). They
-        must be pure: equal input gives equal forces. With such forces the integrator "ballistic", the default of
-        scenes, moves all particles like "velocity_verlet".
+        function gets a :class:`ricochet.ForceInput` of all particles and returns forces in newtons, shape (n, 3).
+        Forces must be pure: equal input gives equal forces. With such forces, the integrator "ballistic", which is the
+        default of scenes, moves all particles like "velocity_verlet".
 
-    Warnings of the tool become Python warnings (UserWarning), and stay in :attr:`warnings`.
+    Warnings of the tool become Python warnings (UserWarning), and are listed in :attr:`warnings`.
 
-    Raises :class:`ricochet.InputError` with all faults of the scene, one line each, like the tool.
+    Raises :class:`ricochet.InputError` with all errors of the scene, one per line, like the tool.
     """
 
     def __init__(
@@ -98,9 +98,9 @@ class Simulation(_core.Simulation):
         self.advance(1)
 
     def advance(self, steps: int, progress: bool = False) -> None:
-        """Makes a number of steps, or all remaining ones if there are fewer. Other Python threads run meanwhile. Ctrl-C
-        ends it after the current step, or within it if the step takes long. progress: shows a bar if tqdm is
-        installed."""
+        """Makes a number of steps, or all remaining steps if fewer remain. Other Python threads run meanwhile. Ctrl-C
+        ends the call after the current step, or within the step if the step takes long. progress: shows a progress bar
+        if tqdm is installed."""
         steps = _count(steps)
         if not progress:
             self._advance(steps, None)
@@ -111,12 +111,12 @@ class Simulation(_core.Simulation):
             bar.update(self.step_index - start)
 
     def run(self, until: Optional[float] = None, progress: bool = False) -> None:
-        """Runs to a time in seconds, or to the end."""
+        """Makes steps up to a time in seconds, or up to the end of the run."""
         steps = self.step_count - self.step_index if until is None else self._steps_to(_time(until))
         self.advance(steps, progress)
 
     def __reduce__(self) -> Any:
-        state = self.save()  # refuses an object whose __init__ has not run
+        state = self.save()  # raises an exception if __init__ has not run
         return _restored, (*self._made_from, state)
 
 
@@ -139,7 +139,7 @@ def _force_list(forces: Any) -> List[Force]:
 
 
 def _short(value: Any) -> str:
-    """Returns a short text of a value for messages."""
+    """Returns a shortened text of a value for messages."""
     try:
         text = repr(value)
     except Exception:
@@ -213,7 +213,7 @@ def _json(value: Any, where: str, indent: Optional[int] = None) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """Converts values that the json module cannot write."""
+    """Converts a value that the json module cannot write to one that it can."""
     if isinstance(value, (np.ndarray, np.generic)):
         if value.dtype.kind in "fc" and not np.isfinite(value).all():
             raise InputError("scene: found nan or inf in an array, expected finite numbers")
@@ -224,7 +224,8 @@ def _plain(value: Any) -> Any:
 
 
 def _with_mesh_files(value: Any, meshes: List[Mesh], depth: int = 0) -> Any:
-    """Returns a copy in which meshes are replaced by names of files, which are written when the scene is read."""
+    """Returns a copy in which names of files replace meshes. Appends the meshes to the list. The files are written when
+    the scene is read."""
     if depth > _DEEPEST:
         raise InputError(
             f"scene: found lists and dictionaries nested deeper than {_DEEPEST} levels, expected fewer: one may contain "
@@ -236,7 +237,7 @@ def _with_mesh_files(value: Any, meshes: List[Mesh], depth: int = 0) -> Any:
     if isinstance(value, Sequence) and not isinstance(value, (str, bytes)):
         return [_with_mesh_files(entry, meshes, depth + 1) for entry in value]
     if isinstance(value, Mesh) or hasattr(value, "faces") or hasattr(value, "cells_dict"):
-        # A copy keeps the present vertices of the mesh.
+        # The mesh is copied, so that later changes of its vertices have no effect.
         mesh = as_mesh(value)
         meshes.append(_copy_of(mesh) if mesh is value else mesh)
         return f"{_MESHES}/{len(meshes) - 1}.obj"
@@ -246,14 +247,15 @@ def _with_mesh_files(value: Any, meshes: List[Mesh], depth: int = 0) -> Any:
 
 
 def _own_materials(mesh: Any) -> List[str]:
-    """Returns the names of materials that the user gave a mesh. Names read from a file are none."""
+    """Returns the material names that the user has set on a mesh. Names read from a file do not count."""
     if not isinstance(mesh, Mesh) or mesh.materials is None or "materials" in mesh.__dict__.get(_OF_FILE, ()):
         return []
     return [name for name in np.unique(mesh.materials).tolist() if name]
 
 
 def _with_own_materials(plain: Any, collider: Any) -> Any:
-    """Adds the user's materials of a collider's mesh to its `group_materials`. Existing entries take precedence."""
+    """Adds the material names that the user has set on a collider's mesh to its `group_materials`. Existing entries
+    take precedence."""
     own = _own_materials(collider.get("file"))
     if not own or not isinstance(plain.get("group_materials", {}), Mapping):
         return plain
@@ -261,7 +263,8 @@ def _with_own_materials(plain: Any, collider: Any) -> Any:
 
 
 def _require_known_materials(scene: Any) -> None:
-    """Raises InputError if the user's materials of a mesh include a name that neither the scene nor the collider has."""
+    """Raises InputError if a material name that the user has set on a mesh is unknown to the scene and to the
+    collider."""
     known, colliders = scene.get("materials", {}), scene.get("colliders", [])
     if not isinstance(known, Mapping) or not isinstance(colliders, Sequence):
         return
@@ -284,8 +287,7 @@ def _copy_of(mesh: Mesh) -> Mesh:
 
 
 def _statements(mesh: Mesh) -> Iterator[List[str]]:
-    """Yields for each triangle the statements of an OBJ file that give it its names. A name that does not fit into a
-    line is omitted."""
+    """Yields the OBJ statements that set the names of each triangle. A name that _is_writable() rejects is omitted."""
     columns: List[Tuple[str, List[str]]] = []
     for statement, array in (("o", mesh.objects), ("g", mesh.groups), ("usemtl", mesh.materials)):
         if array is not None:
@@ -301,7 +303,8 @@ def _statements(mesh: Mesh) -> Iterator[List[str]]:
 
 
 def _write(mesh: Mesh, file: Path) -> None:
-    """Writes a mesh as an OBJ file with all digits of every double and the names of its triangles, in their order."""
+    """Writes a mesh as an OBJ file, with all digits of every double. The triangles have their names and keep their
+    order."""
     with open(file, "w", encoding="utf-8", errors="surrogateescape") as stream:
         stream.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in mesh.vertices.tolist())
         for (a, b, c), statements in zip(mesh.faces.tolist(), _statements(mesh)):

@@ -1,7 +1,7 @@
-"""A drop-in for trimesh's ray interface, exact: ``mesh.ray = ricochet.trimesh.RayMeshIntersector(mesh)``.
+"""Exact drop-in replacement for trimesh's ray interface: ``mesh.ray = ricochet.trimesh.RayMeshIntersector(mesh)``.
 
-Every hit and every miss is certain, in double precision. An edge or a vertex that triangles share is hit once.
-Containment is decided by exact parity in a closed mesh, and by winding number in an open one.
+Hits and misses are exact for coordinates in double precision. A ray through a shared edge or vertex has one hit there.
+Containment is decided by exact parity in a closed mesh, and by winding number in an open mesh.
 """
 
 from __future__ import annotations
@@ -18,29 +18,29 @@ from ._results import AllHits, Hits
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
-# Largest product of a triangle's scaled normal and a direction that may be 0 without rounding. The roundings of the
-# edges, of the cross product and of the sum are some 2^-50 together.
+# A ray counts as parallel to a triangle up to this dot product of the triangle's scaled normal and the ray's scaled
+# direction. The edges, the cross product and the sum have rounding errors of about 2^-50 in total.
 _PARALLEL = 2.0**-44
 
 
 class RayMeshIntersector:
-    """The methods of trimesh.ray.ray_triangle.RayMeshIntersector, for one mesh with vertices and faces.
+    """Exact replacement for trimesh.ray.ray_triangle.RayMeshIntersector, for one mesh with vertices and faces.
 
     Every query uses the current vertices and faces of the mesh.
     """
 
     def __init__(self, geometry: Any, scale_to_box: bool = True) -> None:
-        """scale_to_box is accepted for compatibility with trimesh; double precision does not need it."""
+        """scale_to_box has no effect. It is accepted for compatibility with trimesh."""
         self.mesh = geometry
         self._followed: Optional[_Followed] = None
-        # trimesh makes intersectors before its meshes have vertices, so the class is checked too.
+        # trimesh creates intersectors before its meshes have vertices. The class is therefore checked too.
         if not hasattr(type(geometry), "vertices") and not hasattr(geometry, "vertices"):
             as_mesh(geometry)
 
     def intersects_location(
         self, ray_origins: Any, ray_directions: Any, multiple_hits: bool = True
     ) -> Tuple[Floats, Integers, Integers]:
-        """Returns the points of all hits (or of the first of each ray), the ray of each, and its triangle."""
+        """Returns points, rays and triangles of all hits, or of the first hit of each ray."""
         ray, triangle, point = self._hits(ray_origins, ray_directions, multiple_hits)
         return point, ray, triangle
 
@@ -51,23 +51,25 @@ class RayMeshIntersector:
         return_locations: bool = False,
         multiple_hits: bool = True,
     ) -> Any:
-        """Returns triangle and ray of all hits (or of the first of each ray), and the points if return_locations."""
+        """Returns triangles and rays of all hits, or of the first hit of each ray. With return_locations, also the
+        points."""
         ray, triangle, point = self._hits(ray_origins, ray_directions, multiple_hits)
         return (triangle, ray, point) if return_locations else (triangle, ray)
 
     def intersects_first(self, ray_origins: Any, ray_directions: Any) -> Integers:
-        """Returns the first triangle that each ray hits, -1 for none."""
+        """Returns the first triangle that each ray hits, or -1 if the ray hits none."""
         return self._current().first_hits(ray_origins, ray_directions).triangle
 
     def intersects_any(self, ray_origins: Any, ray_directions: Any) -> npt.NDArray[np.bool_]:
-        """Returns whether each ray hits anything."""
+        """Returns True for each ray that hits the mesh."""
         return self.intersects_first(ray_origins, ray_directions) >= 0
 
     def contains_points(self, points: Any) -> npt.NDArray[np.bool_]:
-        """Returns whether each point is inside the mesh. Points on the surface of a closed mesh are not.
+        """Returns True for each point inside the mesh. Points on the surface of a closed mesh are outside.
 
-        In an open mesh a point is inside if the surface surrounds more than half of it: if the magnitude of its winding
-        number is above 1/2. Triangles that repeat an earlier one in the same winding count once.
+        In an open mesh, a point is inside if the magnitude of its winding number is above 1/2. This means that the
+        surface covers more than half of all directions from the point. Triangles that repeat an earlier one in the same
+        winding count once.
         """
         return self._current().contains(points)
 
@@ -75,7 +77,8 @@ class RayMeshIntersector:
         return RayMeshIntersector(self.mesh)
 
     def __deepcopy__(self, _: Any) -> "RayMeshIntersector":
-        # trimesh deep-copies its meshes; the copied intersector still uses the same mesh.
+        # trimesh deep-copies its meshes together with their intersectors. The copied intersector still uses the
+        # original mesh.
         return RayMeshIntersector(self.mesh)
 
     def __getstate__(self) -> Any:
@@ -95,8 +98,8 @@ class RayMeshIntersector:
 
 
 class _Followed:
-    """State of a mesh at one time, with queries in the sense of trimesh: a ray in the plane of a triangle does not hit
-    it."""
+    """State of a mesh at one time. Its queries follow trimesh: a ray in the plane of a triangle does not hit this
+    triangle."""
 
     def __init__(self, queries: Mesh, state: Any = None, arrays: Any = None) -> None:
         self.queries = queries
@@ -125,12 +128,12 @@ class _Followed:
         return first
 
     def all_hits(self, origins: Any, directions: Any) -> Tuple[AllHits, Integers]:
-        """Returns all hits, and which of them count."""
+        """Returns all hits, and the indices of the hits that count in trimesh."""
         every, in_plane = self.queries._all_hits_and_planes(origins, directions)
         return every, np.flatnonzero(~in_plane)
 
     def contains(self, points: Any) -> npt.NDArray[np.bool_]:
-        """Returns whether each point is inside."""
+        """Returns True for each point inside the mesh."""
         if self.queries.is_closed:
             return self.queries.inside(points)
         if self._distinct is None:
@@ -139,7 +142,7 @@ class _Followed:
         return inside
 
     def _is_parallel(self, triangle: Integers, directions: Floats) -> npt.NDArray[np.bool_]:
-        """Returns whether each direction lies in the plane of its triangle, as far as rounding can tell."""
+        """Returns True for each direction that is parallel to the plane of its triangle within rounding errors."""
         if self._normals is None:
             self._normals = _normals(self.queries)
         along = directions / np.abs(directions).max(axis=1, initial=0.0, keepdims=True)
@@ -148,7 +151,7 @@ class _Followed:
 
 
 def _without_copies(mesh: Mesh) -> Mesh:
-    """Returns the mesh without the triangles that repeat an earlier one in the same winding, by the positions of corners."""
+    """Returns the mesh without triangles that repeat an earlier one: equal corner positions in the same winding."""
     positions = np.unique(mesh.vertices + 0.0, axis=0, return_inverse=True)[1].reshape(-1)  # -0 becomes 0
     corners = positions[mesh.faces]
     first = corners.argmin(axis=1)
@@ -158,7 +161,7 @@ def _without_copies(mesh: Mesh) -> Mesh:
 
 
 class _Empty(_Followed):
-    """A mesh without triangles: nothing is hit, nothing is inside."""
+    """A mesh without triangles. No ray hits it, and no point is inside it."""
 
     def __init__(self, state: Any, arrays: Any) -> None:
         super().__init__(Mesh(np.zeros((3, 3)), [[0, 1, 2]]), state, arrays)
@@ -172,7 +175,7 @@ class _Empty(_Followed):
 
 
 def _followed(mesh: Any, before: Optional[_Followed]) -> _Followed:
-    """Returns the current state of a mesh: `before`, if it has not changed since."""
+    """Returns the current state of a mesh. This is `before` if the mesh has not changed since."""
     vertices, faces = getattr(mesh, "vertices", None), getattr(mesh, "faces", None)
     if vertices is None or faces is None:
         return before or _Followed(as_mesh(mesh))
@@ -186,7 +189,8 @@ def _followed(mesh: Any, before: Optional[_Followed]) -> _Followed:
 
 
 def _moved(before: Optional[_Followed], vertices: Any, faces: Any) -> Optional[Mesh]:
-    """Returns the mesh with moved vertices, which is cheaper than a new mesh; None if its triangles have changed."""
+    """Returns the mesh of `before` with moved vertices, which is cheaper than a new mesh. Returns None if the triangles
+    have changed."""
     if before is None or isinstance(before, _Empty) or not np.array_equal(before.queries.faces, faces):
         return None
     if np.shape(vertices) != before.queries.vertices.shape:
@@ -196,7 +200,7 @@ def _moved(before: Optional[_Followed], vertices: Any, faces: Any) -> Optional[M
 
 
 def _state_of(vertices: Any, faces: Any) -> Any:
-    """Returns the hashes of the content of trimesh's arrays; None for other arrays, which are compared entry by
+    """Returns the content hashes of trimesh's arrays. Returns None for other arrays, which are compared entry by
     entry."""
     if isinstance(vertices, np.ndarray) and isinstance(faces, np.ndarray):
         with contextlib.suppress(TypeError):  # NumPy's own arrays have no hash
@@ -205,7 +209,8 @@ def _state_of(vertices: Any, faces: Any) -> Any:
 
 
 def _normals(mesh: Mesh) -> Floats:
-    """Returns the normals of triangles, of a length below 1. Each edge is scaled, so that no product overflows."""
+    """Returns scaled normals of the triangles, shorter than 1. The edges are scaled first, so that no product
+    overflows."""
     corners = mesh.vertices[mesh.faces]
     edges = corners[:, 1:] - corners[:, :1]
     size = np.abs(edges).max(axis=2, keepdims=True)
@@ -215,7 +220,7 @@ def _normals(mesh: Mesh) -> Floats:
 
 
 def _rows(array: Any, rows: Integers) -> Floats:
-    """Returns rows of an array; a single row is repeated."""
+    """Returns the given rows of an array. If the array has a single row, this row is repeated."""
     whole = np.atleast_2d(np.asarray(array, dtype=float))
     chosen: Floats = whole[rows] if len(whole) != 1 else np.broadcast_to(whole, (len(rows), 3))
     return chosen

@@ -1,4 +1,4 @@
-"""Shared by the tests: small meshes, and the folder of the project."""
+"""Small meshes, and the folder of the project, for all tests."""
 
 import os
 from pathlib import Path
@@ -15,7 +15,8 @@ BOX_FACES = np.array(
 
 
 def ball(levels=3):
-    """An octahedron whose triangles are split and pushed onto the unit sphere."""
+    """Returns a mesh of the unit sphere: an octahedron with subdivided triangles, whose vertices are moved onto the
+    sphere."""
     vertices = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=float)
     faces = np.array([[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]])
     for _ in range(levels):
@@ -31,7 +32,7 @@ def ball(levels=3):
 
 
 def bouncing(**changes):
-    """A ball above a floor."""
+    """Returns a scene with balls above a floor."""
     scene = {
         "ricochet": 1,
         "simulation": {"time_step": 0.01, "duration": 2.0},

@@ -13,19 +13,19 @@ from support import BOX_FACES, BOX_VERTICES, ROOT, bouncing
 
 
 def cells(points, **blocks):
-    """A mesh in the form of meshio; dictionaries keep their order."""
+    """Returns a mesh in the form of meshio, with the blocks of cells in the given order."""
     blocks = [types.SimpleNamespace(type=kind, data=data) for kind, data in blocks.items()]
     return types.SimpleNamespace(points=np.array(points, dtype=float), cells=blocks)
 
 
 def grid(order):
-    """Points of a unit square in rows, order + 1 each."""
+    """Returns points on a unit square in order + 1 rows of order + 1 points."""
     steps = np.arange(order + 1) / order
     return np.array([[x, y, 0.0] for y in steps for x in steps])
 
 
 def quad_nodes(order):
-    """Nodes of one cell in meshio's order: corners, nodes on the edges, inner ones."""
+    """Returns the nodes of one quad in meshio's order: corners, nodes on the edges, inner nodes."""
     n = order + 1
     at = lambda x, y: y * n + x  # noqa: E731
     inner = range(1, order)
@@ -143,7 +143,7 @@ class Names(unittest.TestCase):
             particles=[{"position": [x, 0.1, 1.0]} for x in (-0.5, 0.5)])
 
     def rebounds(self, scene):
-        """Returns whether each of the two particles leaves the plate upward."""
+        """Returns for each of the two particles whether it leaves the plate upward."""
         simulation = ricochet.Simulation(scene, contacts=True)
         simulation.run(until=0.6)
         contacts = simulation.take_contacts()
@@ -235,7 +235,7 @@ class Names(unittest.TestCase):
         np.testing.assert_array_equal(mesh.objects, ["slab", "slab"])
         np.testing.assert_array_equal(mesh.groups, ["left side", "right"])
         np.testing.assert_array_equal(mesh.materials, ["soft", "a#b"])
-        simulation = ricochet.Simulation(self.scene(mesh))  # "a#b" is not a material, and no key needs it
+        simulation = ricochet.Simulation(self.scene(mesh))  # a file's name "a#b" need not be a material
         np.testing.assert_array_equal(simulation.collider_mesh("plate").faces, mesh.faces)
 
     def test_a_mesh_with_names_of_a_file_acts_like_the_file(self):

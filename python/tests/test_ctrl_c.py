@@ -5,7 +5,7 @@ import subprocess
 import sys
 import unittest
 
-# Makes a query that takes seconds, and interrupts itself after a tenth of a second.
+# Program that makes a query of several seconds and sends itself SIGINT after 0.1 s.
 ASKS = """
 import _thread, os, signal, sys, threading, time
 import numpy as np

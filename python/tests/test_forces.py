@@ -1,4 +1,4 @@
-"""Python forces on all particles at once, compiled or not."""
+"""Forces that are Python functions or compiled functions."""
 
 import gc
 import importlib.util
@@ -13,7 +13,7 @@ from support import bouncing
 
 
 def oscillators(integrator="rk4", **keys):
-    """Two masses on springs to the origin, k = 4 N/m."""
+    """Returns a scene of two masses, each on a spring to the origin with k = 4 N/m."""
     options = {"time_step": 0.001, "duration": 10.0}
     if integrator is not None:
         options["integrator"] = integrator
@@ -38,7 +38,8 @@ class Forces(unittest.TestCase):
         simulation.run(until=1.0)
         expected = [[np.cos(2.0), 0, 0], [0, 2 * np.cos(1.0), 0]]
         np.testing.assert_allclose(simulation.particles.position, expected, atol=1e-9)
-        np.testing.assert_array_equal(seen[0].position, [[1, 0, 0], [0, 2, 0]])  # kept copies
+        np.testing.assert_array_equal(seen[0].position, [[1, 0, 0], [0, 2, 0]])  # the force has kept copies of its
+                                                                                 # input
         np.testing.assert_array_equal(seen[0].mass, [1, 4])
 
     def test_a_step_passes_on_the_exception_of_a_force(self):
@@ -245,7 +246,7 @@ class States(unittest.TestCase):
                 with self.assertRaisesRegex(ricochet.InputError, "^restore: found a state made under") as caught:
                     target.restore(state)
                 self.assertNotIn("\n", str(caught.exception))
-                target.step()  # nothing has happened to it
+                target.step()  # the failed restore() has not changed the simulation
                 self.assertNotEqual(before, target.state_hash)
         simulation = ricochet.Simulation(numbers, {"simulation.integrator": "rk4", "simulation.duration": 3.0})
         simulation.restore(made["plain"].save())

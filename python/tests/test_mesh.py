@@ -70,7 +70,7 @@ class Mesh(unittest.TestCase):
             self.assertAlmostEqual(merged.volume, 0.001, places=12)
             mirrored = ricochet.Mesh.read(file, scale=[-0.001, 0.002, 0.001], merge=1e-5)
             np.testing.assert_allclose(mirrored.bounds, [[-0.1, 0, 0], [0, 0.4, 0.3]])
-            self.assertAlmostEqual(mirrored.volume, 0.002, places=12)  # still wound outward
+            self.assertAlmostEqual(mirrored.volume, 0.002, places=12)  # mirroring keeps the outward winding
             for scale in (0, float("nan"), [1, 2], [1, 0, 1], "mm", "0.5", None, [[1, 2], [3]], True, [[1, 2, 3]], ["1", 1, 1], 1 + 0j):
                 with self.assertRaisesRegex(ricochet.InputError, "scale: found .*expected a finite number other than 0"):
                     ricochet.Mesh.read(file, scale=scale)

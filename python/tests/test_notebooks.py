@@ -1,4 +1,4 @@
-"""The notebooks, cell by cell, and the examples of the documents."""
+"""Runs the notebooks cell by cell, and the examples in the documents."""
 
 import contextlib
 import io

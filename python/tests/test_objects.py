@@ -1,4 +1,4 @@
-"""Objects without a run of __init__, error messages about arguments, and endless nesting."""
+"""Objects whose __init__ has not run, error messages about arguments, and endless nesting."""
 
 import os
 import pickle
@@ -13,7 +13,7 @@ from support import BOX_FACES, BOX_VERTICES, bouncing
 
 POINTS = np.array([[0.5, 0.5, 0.5]])
 
-# Uses every method and property of an object whose __init__ has not run.
+# Program that uses every method and property of an object whose __init__ has not run.
 ASKS_ALL = """
 import sys
 import ricochet
@@ -103,7 +103,7 @@ class NotMade(unittest.TestCase):
         self.assertEqual(len(pickle.loads(pickle.dumps(made)).particles.id), 2)
 
 
-# Runs a daemon thread that is in C++ code, or in a force, when the interpreter ends.
+# Program with a daemon thread that runs C++ code or a Python force while the interpreter ends.
 ENDS = """
 import sys, threading, time
 import ricochet

@@ -1,4 +1,4 @@
-"""A clean virtual environment: install, run the README's example, import fast."""
+"""Tests in a clean virtual environment: installation, the README's example, and the time of the import."""
 
 import os
 import re

@@ -1,4 +1,5 @@
-"""Every function with every kind of invalid argument gives an exception or a result, and never ends the interpreter."""
+"""Calls every function with every kind of invalid argument. A call must raise an exception or return, and must not end
+the interpreter."""
 
 import itertools
 import unittest

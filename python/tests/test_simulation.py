@@ -190,7 +190,7 @@ class Simulation(unittest.TestCase):
 
         thread = threading.Thread(target=run)
         thread.start()
-        # While the other thread steps in C++, this one steps another simulation to its end.
+        # While the other thread steps in C++, this thread runs another simulation to its end.
         other = ricochet.Simulation(bouncing())
         other.run()
         while len(looks) < 2 and thread.is_alive():
@@ -205,7 +205,8 @@ class Simulation(unittest.TestCase):
         refused = []
 
         def look():
-            # Another Python thread reads the simulation during the run, which waits for it.
+            # Another Python thread reads the simulation during the run, and this callback of the run waits for that
+            # thread.
             def ask():
                 try:
                     simulation.particles
@@ -233,7 +234,7 @@ class Simulation(unittest.TestCase):
         simulation.step()
         self.assertEqual(simulation.step_index, before + 1)
 
-    # A step of this many particles would take minutes.
+    # One step of the larger scene would take minutes.
     def test_control_c_ends_a_step_that_takes_long(self):
         for count in (1, 3000):
             with self.subTest(count=count):

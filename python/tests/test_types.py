@@ -1,4 +1,4 @@
-"""The package and its stubs, checked by a type checker."""
+"""Checks the package and its stubs with a type checker."""
 
 import ast
 import importlib.util

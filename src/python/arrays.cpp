@@ -43,7 +43,8 @@ bool has_64_bits(PyObject* number) {
     return fits || fits_signed;
 }
 
-/// Returns the first entry of an array of objects that is not a number, or the reason why the array is not numeric.
+/// Describes why an array of Python objects is not an array of numbers. Returns the type of the first entry that is not
+/// a number. If all entries are numbers, returns why NumPy stored them as objects.
 std::string first_odd_entry(const py::array& array, const char* type) {
     const py::object flat = array.attr("ravel")();
     const py::object number = py::module_::import("numpy").attr("number");
@@ -63,7 +64,7 @@ std::string first_odd_entry(const py::array& array, const char* type) {
                        type);
 }
 
-/// Throws InputError for masked entries, which would otherwise count as numbers.
+/// Throws InputError for arrays with masked entries, because NumPy would treat these entries as numbers.
 void refuse_masked(const py::handle& object, const char* name, const std::string& expected) {
     const py::module_ masked = py::module_::import("numpy.ma");
     if (!masked.attr("is_masked")(object).cast<bool>()) return;
@@ -94,7 +95,7 @@ py::array as_array(const py::handle& object, const char* name, const std::string
 
 bool has_shape(const py::array& array, py::ssize_t columns) {
     if (columns == 0) return array.ndim() == 1;
-    // An empty list has no second axis.
+    // An empty list becomes an array without a second axis.
     return (array.ndim() == 2 && array.shape(1) == columns) || (array.ndim() == 1 && array.shape(0) == 0);
 }
 
@@ -202,7 +203,8 @@ py::array given_flags(std::vector<std::uint8_t>&& flags) {
 }
 
 void set_threads(int threads) {
-    auto limit = std::make_unique<ThreadLimit>(threads);  // refuses invalid arguments before anything changes
+    auto limit = std::make_unique<ThreadLimit>(threads);  // throws for invalid arguments before the old limit is
+                                                          // removed
     thread_limit() = std::move(limit);
 }
 

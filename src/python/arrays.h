@@ -1,6 +1,6 @@
 /// \file
-/// Conversion of arrays between Python and C++. Input from users is checked, and messages name it. Returned arrays keep
-/// their memory alive.
+/// Conversion of arrays between Python and C++. Input from users is checked, and messages contain the name of the
+/// argument. Returned arrays keep their memory alive.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -23,21 +23,22 @@ namespace py = pybind11;
 
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// Number of entries up to which a copy is made without a check of the available memory. An array of few bytes may show
-/// many entries: broadcast_to().
+/// Largest number of entries that are copied without a check of the available memory. Larger arrays are checked,
+/// because an array from broadcast_to() has many entries in few bytes.
 inline constexpr std::size_t kFewNumbers = std::size_t{1} << 20;
 
-/// Returns numbers of shape (count, columns) as doubles; for columns 0, of shape (count). An array of doubles is not
-/// copied. Throws InputError "NAME: found ..., expected ..." for anything else, also for text and complex numbers.
+/// Returns an array of shape (count, columns) as doubles. If columns is 0, the shape is (count). An array of doubles is
+/// not copied. Throws InputError "NAME: found ..., expected ..." for other shapes and types, such as text and complex
+/// numbers.
 [[nodiscard]] Doubles numbers(const py::handle& object, const char* name, py::ssize_t columns);
-/// Returns numbers of shape (n, 3), or (3,) for one row.
+/// Returns an array of shape (n, 3) as doubles. Also accepts the shape (3,) for a single row.
 [[nodiscard]] Doubles vectors(const py::handle& object, const char* name);
-/// Repeats the only row of an array as often as another array has rows. Does nothing if the array has more rows.
+/// If an array has a single row, repeats this row until the array has as many rows as the other one.
 void repeat_one(Doubles& array, const Doubles& other, const char* name);
-/// Returns one row of numbers. The object may also be a single number, or None for no numbers.
+/// Returns an array with one axis as doubles. Also accepts a single number, and None for an empty array.
 [[nodiscard]] Doubles numbers_or_one(const py::handle& object, const char* name);
-/// Returns whole numbers of shape (count, columns), from 0 to below 2^32; for columns 0, of shape (count), to below
-/// 2^64.
+/// Returns the whole numbers of an array of shape (count, columns). They must be at least 0 and below 2^32. If columns
+/// is 0, the shape is (count) and the limit is 2^64.
 [[nodiscard]] std::vector<std::uint64_t> whole_numbers(const py::handle& object, const char* name, py::ssize_t columns);
 
 /// Returns the rows of an array of three columns.
@@ -49,7 +50,7 @@ void repeat_one(Doubles& array, const Doubles& other, const char* name);
     return {array.data(), static_cast<std::size_t>(array.size())};
 }
 
-/// Returns an array over memory that `keeper` keeps alive. Vec3 gives a second axis of 3.
+/// Returns an array over memory that `keeper` keeps alive. If T is Vec3, the array has a second axis of length 3.
 template <class T>
 [[nodiscard]] py::array array_over(const T* data, std::size_t count, std::shared_ptr<const void> keeper) {
     const py::capsule owner(new std::shared_ptr<const void>(std::move(keeper)),
@@ -62,7 +63,7 @@ template <class T>
     }
 }
 
-/// Returns such an array, read-only.
+/// Returns an array like array_over(), but read-only.
 template <class T>
 [[nodiscard]] py::array lent(const T* data, std::size_t count, std::shared_ptr<const void> keeper) {
     py::array array = array_over(data, count, std::move(keeper));
@@ -70,7 +71,7 @@ template <class T>
     return array;
 }
 
-/// Returns such an array of flags, as booleans.
+/// Returns an array of booleans over flags. It is read-only, like the result of lent().
 [[nodiscard]] py::array lent_flags(const std::uint8_t* data, std::size_t count, std::shared_ptr<const void> keeper);
 
 /// Returns an array that owns the memory of a vector. The user may write into it.
@@ -81,7 +82,7 @@ template <class T>
     const std::size_t count = keeper->size();
     return array_over(data, count, std::move(keeper));
 }
-/// Returns such an array of flags, as booleans.
+/// Returns an array of booleans that owns the memory of the flags, like the result of given().
 [[nodiscard]] py::array given_flags(std::vector<std::uint8_t>&& flags);
 
 /// Sets the thread limit of queries and steps (ricochet.set_threads).

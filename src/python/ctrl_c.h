@@ -17,8 +17,8 @@
 
 namespace ricochet::python {
 
-/// Calls work() on a separate thread, and look() repeatedly on this one until work() has ended. Call it without the
-/// lock.
+/// Calls work() on a separate thread. Until work() has ended, calls look() repeatedly on the calling thread. The caller
+/// must not hold the GIL.
 template <class Work, class Look>
 void run_beside(const Work& work, std::chrono::milliseconds interval, const Look& look) {
     std::exception_ptr error;
@@ -38,17 +38,17 @@ void run_beside(const Work& work, std::chrono::milliseconds interval, const Look
     if (error != nullptr) std::rethrow_exception(error);
 }
 
-/// Lets Ctrl-C end parallel loops. Python handles signals only on its main thread, so the thread that made the object
-/// checks for them. Create it with the lock.
+/// Lets Ctrl-C end parallel loops. Python handles signals only on its main thread, so only the thread that created the
+/// object checks for signals. That thread must hold the GIL when it creates the object.
 class CtrlC {
 public:
     CtrlC() = default;
     CtrlC(const CtrlC&) = delete;
     CtrlC& operator=(const CtrlC&) = delete;
 
-    /// Returns work(), called without the lock. Ctrl-C ends its loops, and its exception is rethrown. is_short: work
-    /// has one block, so this thread does it and checks for Ctrl-C meanwhile. Otherwise another thread does the work,
-    /// and this thread checks.
+    /// Calls work() without the GIL and returns its result. Ctrl-C ends the parallel loops of work(); the exception of
+    /// Ctrl-C is then rethrown. is_short: work() has a single block. This thread then runs the block and checks for
+    /// Ctrl-C meanwhile. Otherwise another thread runs work(), and this thread only checks.
     template <class Work>
     auto run(bool is_short, const Work& work) {
         std::optional<decltype(work())> result;
@@ -62,7 +62,7 @@ public:
                 stoppable();
             else
                 run_beside(stoppable, kInterval, [this] { look(); });
-        } catch (const Ended&) {  // the reason is in error_
+        } catch (const Ended&) {  // error_ contains the exception
         }
         if (error_ != nullptr) std::rethrow_exception(error_);
         return std::move(*result);
@@ -72,7 +72,7 @@ private:
     using Clock = std::chrono::steady_clock;
     static constexpr std::chrono::milliseconds kInterval{50};
 
-    /// Exception that ends a loop.
+    /// Exception that ends a parallel loop.
     struct Ended : std::exception {};
 
     void look() {
@@ -81,7 +81,7 @@ private:
         error_ = std::make_exception_ptr(py::error_already_set());
         is_ended_ = true;
     }
-    /// Called from any thread.
+    /// Checks for Ctrl-C inside a parallel loop. Any thread may call this function.
     void poll() {
         if (std::this_thread::get_id() == thread_ && Clock::now() >= next_) {
             next_ = Clock::now() + kInterval;

@@ -1,4 +1,5 @@
-// Forces by users, for all particles at once: a Python function or a compiled function.
+// Forces that users write as a Python function or as a compiled function. One call computes the forces on all
+// particles.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +16,8 @@
 namespace ricochet::python {
 namespace {
 
-/// Returns the function's name for messages: its index in `forces`, and its name or the type of the callable object.
+/// Returns the name of a force in messages. It contains the index in `forces`, and the name of the function or the type
+/// of the callable object.
 std::string name_of(const py::object& function, std::size_t number) {
     py::object name = py::getattr(function, "__name__", py::none());
     if (!py::isinstance<py::str>(name)) name = py::type::of(function).attr("__name__");
@@ -41,7 +43,7 @@ public:
     [[nodiscard]] const py::object& function() const { return function_; }
 
 protected:
-    /// Adds forces, in N, as accelerations.
+    /// Divides forces, in N, by the masses, and adds the accelerations to the result.
     void add(std::span<const Vec3> forces, const ParticlesView& particles, std::span<Vec3> result) const {
         for (std::size_t i = 0; i < forces.size(); ++i) {
             const Vec3 acceleration = forces[i] / particles.masses[i];
@@ -61,8 +63,8 @@ private:
     std::string name_;
 };
 
-/// Force of a Python function, which gets arrays and returns an array of forces. It may keep its input, because the
-/// arrays are copies.
+/// Force of a Python function. The function gets arrays and returns an array of forces. It may store its input, because
+/// the arrays are copies.
 class PythonForce : public UserForce {
 public:
     using UserForce::UserForce;
@@ -82,7 +84,7 @@ public:
 /// Force made by ricochet.compiled_force(), called without the GIL.
 class CompiledForce : public UserForce {
 public:
-    /// Returns 0 if the user's function has raised an exception.
+    /// Compiled function. Returns 0 if the user's function has raised an exception.
     using Function = std::int32_t (*)(double time, std::int64_t count, const double* position, const double* velocity,
                                       const double* mass, const double* radius, double* force);
 
@@ -102,8 +104,8 @@ public:
     }
 
 private:
-    /// Raises the exception of the user's function. Compiled code cannot report it, so the same call is repeated from
-    /// Python.
+    /// Raises the exception of the user's function. Compiled code cannot return the exception, so this function repeats
+    /// the same call from Python.
     [[noreturn]] void raise_again(const ParticlesView& particles) const {
         const Locked locked;
         function().attr("_call")(particles.time, copied(particles.positions), copied(particles.velocities),

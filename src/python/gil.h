@@ -1,7 +1,7 @@
 /// \file
-/// Scopes that release and take Python's lock, also safe while the interpreter ends. At that time Python ends a thread
-/// that asks for the lock, and C++ code on its stack does not survive this. These scopes make such a thread wait
-/// forever instead, like a daemon thread without work.
+/// Scopes that release and acquire Python's global interpreter lock (GIL). They are safe while the interpreter ends. At
+/// that time Python terminates a thread that asks for the GIL, which C++ code on the thread's stack cannot handle.
+/// These scopes make such a thread wait forever instead.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -10,16 +10,17 @@ namespace ricochet::python {
 
 namespace py = pybind11;
 
-/// Registers a function that Python calls at its end. It waits, for two seconds at most, for the threads that run here.
-/// Running steps end meanwhile.
+/// Registers a function that Python calls when the interpreter ends. The function waits for the threads that run code
+/// of this module, for two seconds at most. Running steps end meanwhile.
 void wait_for_threads_at_exit();
 
-/// Does not return once the interpreter ends. For threads that run long without the lock.
+/// Returns immediately, unless the interpreter is ending. In that case it never returns. Threads that run for a long
+/// time without the GIL call it regularly.
 void stay_if_ending();
 
 namespace detail {
 
-/// Scope that counts a thread that runs C++ code beside the interpreter, or Python code within such code.
+/// Scope that counts a thread while it runs C++ code without the GIL, or Python code that such C++ code has called.
 class Beside {
 public:
     Beside();
@@ -28,7 +29,7 @@ public:
     Beside& operator=(const Beside&) = delete;
 };
 
-/// Scope of a thread without the lock: before it asks for the lock, and after it has released it.
+/// Scope of a thread without the GIL. Calls stay_if_ending() after the GIL was released and before it is acquired.
 class WithoutLock {
 public:
     WithoutLock() { stay_if_ending(); }
@@ -39,7 +40,7 @@ public:
 
 }  // namespace detail
 
-/// Scope without the lock. Replaces py::gil_scoped_release.
+/// Scope without the GIL. Replaces py::gil_scoped_release.
 class Unlocked {
 private:
     detail::Beside beside_;
@@ -47,7 +48,7 @@ private:
     detail::WithoutLock without_;
 };
 
-/// Scope that takes the lock again inside an Unlocked scope. Replaces py::gil_scoped_acquire.
+/// Scope that acquires the GIL again inside an Unlocked scope. Replaces py::gil_scoped_acquire.
 class Locked {
 private:
     detail::Beside beside_;

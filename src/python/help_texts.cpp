@@ -12,7 +12,7 @@
 namespace ricochet::python {
 namespace {
 
-/// Splits a text at the separators outside brackets.
+/// Splits a text at the separators that are not inside brackets.
 std::vector<std::string> split(std::string_view text, std::string_view separator) {
     std::vector<std::string> parts;
     int depth = 0;
@@ -28,8 +28,8 @@ std::vector<std::string> split(std::string_view text, std::string_view separator
     return parts;
 }
 
-/// Returns an argument without its type: "most: object = None" becomes "most=None". The types give no information,
-/// because every type that NumPy understands is accepted.
+/// Returns an argument without its type: "most: object = None" becomes "most=None". The types are omitted, because the
+/// functions accept every type that NumPy can convert.
 std::string argument(const std::string& written) {
     const std::size_t colon = written.find(": ");
     const std::size_t value = written.find(" = ");
@@ -39,7 +39,7 @@ std::string argument(const std::string& written) {
     return fmt::format("{}={}", name, standard == "inf" ? "math.inf" : standard);
 }
 
-/// Returns the type of a result as a sentence, with the fields of its class.
+/// Returns a sentence with the type of a result and the fields of this type.
 std::string sentence_on(std::string type) {
     constexpr std::string_view kCompiled = "ricochet._core.";
     if (type.starts_with(kCompiled)) type.replace(0, kCompiled.size(), "ricochet.");
@@ -56,7 +56,8 @@ std::string sentence_on(std::string type) {
     return text.substr(0, text.size() - 2) + ".";
 }
 
-/// Returns the text with a signature that Python reads; empty if it does not begin with pybind11's signature.
+/// Returns the text with a signature in the form that Python parses. Returns an empty text if `text` does not begin
+/// with pybind11's signature.
 std::string rewritten(std::string_view text, std::string_view name) {
     const std::size_t line_end = std::min(text.find('\n'), text.size());
     const std::string line(text.substr(0, line_end));
@@ -80,7 +81,7 @@ void write_signature(PyObject* function, const std::string& name) {
     if (definition->ml_doc == nullptr) return;
     const std::string text = rewritten(definition->ml_doc, name);
     if (text.empty()) return;
-    // pybind11 frees the text with the function.
+    // pybind11 frees the new text together with the function.
     std::free(const_cast<char*>(definition->ml_doc));  // NOLINT(cppcoreguidelines-no-malloc)
     definition->ml_doc = strdup(text.c_str());
 }
@@ -90,7 +91,7 @@ void write_signature(PyObject* function, const std::string& name) {
 void write_signatures(const py::object& class_or_module) {
     const py::dict members(class_or_module.attr("__dict__"));
     for (const auto& [name, member] : members) {
-        const py::object function = py::getattr(member, "__func__", member);  // function of a static method
+        const py::object function = py::getattr(member, "__func__", member);  // unwraps the function of a static method
         write_signature(function.ptr(), py::str(name));
     }
 }

@@ -27,9 +27,10 @@ using ContactsObject = ResultObject<ContactsName>;
 using TriangleTotalsObject = ResultObject<TriangleTotalsName>;
 using MeshObject = ResultObject<MeshName>;
 
-/// Rewrites the texts of the functions in a class or a module. pybind11 puts the signature into the first line, which
-/// Python treats as text. The new text has the signature in Python's form, and ends with the type of the result and the
-/// fields of named tuples. Call it once for each class and module, after its last function.
+/// Rewrites the texts of the functions in a class or a module. pybind11 writes the signature into the first line, which
+/// Python treats as ordinary text. The new text has the signature in Python's form. It ends with the type of the result
+/// and the fields of named tuples. Call this function once for each class and module, after its last function was
+/// defined.
 void write_signatures(const py::object& class_or_module);
 
 }  // namespace ricochet::python

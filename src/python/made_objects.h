@@ -1,6 +1,7 @@
 /// \file
-/// Checks for Python objects whose __init__ has not run. pybind11 would give their methods uninitialised memory, so
-/// they are refused as arguments. Every file that binds or casts one of these classes includes this file.
+/// Checks for Python objects whose __init__ has not run. pybind11 would pass uninitialised memory to their methods.
+/// Such objects are therefore refused as arguments. Every file that binds or casts one of these classes includes this
+/// file.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -10,15 +11,15 @@
 
 namespace ricochet::python {
 
-/// Throws TypeError for an instance of a pybind11 class that has no value yet. Such an instance comes from
-/// Class.__new__(Class), or from a derived class whose __init__ uses it before super().__init__().
+/// Throws TypeError for an instance of a pybind11 class that contains no C++ object yet. Class.__new__(Class) returns
+/// such an instance. In a derived class, `self` is such an instance until super().__init__() was called.
 void require_made(const py::handle& object);
 
-/// Makes the base class of all pybind11 classes (Mesh.__base__) raise a TypeError when an object of it is made. This
-/// also applies to classes that users derive from it alone. pybind11 would end the interpreter.
+/// Makes the base class of all pybind11 classes (Mesh.__base__) raise a TypeError when it is instantiated. The same
+/// holds for classes that users derive only from this base class. Otherwise pybind11 would terminate the interpreter.
 void guard_root_class();
 
-/// Converts arguments to references to T.
+/// Converts arguments to references to T, and calls require_made() first.
 template <class T>
 class MadeCaster : public py::detail::type_caster_base<T> {
 public:

@@ -40,7 +40,7 @@ AffineMap map_of(const py::object& transform) {
             const py::tuple shape = py::module_::import("numpy").attr("shape")(transform);
             return shape.equal(py::make_tuple(4, 4));
         } catch (const py::error_already_set&) {
-            return false;  // rows of several lengths
+            return false;  // the rows have different lengths
         }
     };
     if (!is_matrix()) throw InputError("transform: expected a matrix of shape (4, 4)");
@@ -55,7 +55,8 @@ AffineMap map_of(const py::object& transform) {
             {rows[3], rows[7], rows[11]}};
 }
 
-/// Stores names of triangles, one each or none, in the object's dictionary. Throws InputError for anything else.
+/// Stores names of triangles in the object's dictionary. names: one name for each triangle, or None. Throws InputError
+/// for other values.
 void set_names(const py::object& mesh, const char* kind, const py::object& names) {
     const auto count = py::cast<const MeshQueries&>(mesh).mesh().triangles.size();
     py::module_::import("ricochet._mesh").attr("_set_names")(mesh, count, kind, names);
@@ -73,7 +74,8 @@ void bind_names(Type& type, const char* kind, const char* text) {
         [kind](const py::object& mesh, const py::object& names) { set_names(mesh, kind, names); }, text);
 }
 
-/// Returns the triangles of polygons. Face i has the corners offsets[i] to offsets[i + 1].
+/// Cuts polygons into triangles. The corners of face i are at the indices offsets[i] to offsets[i + 1] of `corners`,
+/// without the last.
 py::array triangulated(const py::object& vertices, const py::object& offsets, const py::object& corners) {
     const Doubles positions = numbers(vertices, "points", 3);
     const auto narrow = [](const std::vector<std::uint64_t>& list) {
@@ -90,11 +92,11 @@ py::array triangulated(const py::object& vertices, const py::object& offsets, co
         .attr("reshape")(-1, 3);
 }
 
-/// Number of queries up to which they are one block.
+/// Largest number of queries that run as a single block on one thread.
 constexpr py::ssize_t kFewQuestions = 256;
 
-/// Makes `count` queries while other Python threads run; Ctrl-C ends them. Uses a copy of the mesh, so that
-/// set_vertices() may run concurrently. transform: placement of the mesh, or None.
+/// Makes `count` queries while other Python threads run. Ctrl-C ends the queries. Uses a copy of the mesh, so that
+/// another thread may call set_vertices() meanwhile. transform: placement of the mesh, or None.
 template <class Ask>
 auto ask(const MeshQueries& mesh, py::ssize_t count, const py::object& transform, const Ask& question) {
     const auto answer = [&](const auto& asked) {
@@ -134,7 +136,8 @@ HitsObject first_hits(const MeshQueries& mesh, const py::object& origins, const 
     return hits_of(ask(mesh, rays.count(), transform, [&](const auto& m) { return m.first_hits(batch); }));
 }
 
-/// Returns AllHits, and for each hit whether the ray lies in the planes of all triangles that it meets there.
+/// Returns AllHits, and one flag for each hit. The flag is true if the ray lies in the plane of every triangle that it
+/// hits at this point.
 py::tuple all_hits_and_planes(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
                               const py::object& most, const py::object& transform) {
     const Rays rays(origins, directions, most);
@@ -311,7 +314,7 @@ void bind_points(py::class_<MeshQueries>& type) {
 }
 
 void bind_pickling(py::class_<MeshQueries>& type) {
-    // Without __reduce__ the old protocols of pickle look for a base class that could be copied.
+    // Without __reduce__, the old protocols of pickle fail, because they look for a base class that can be copied.
     type.def("__reduce__",
              [](const py::object& mesh) {
                  return py::make_tuple(py::module_::import("copyreg").attr("__newobj__"),

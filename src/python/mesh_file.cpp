@@ -30,14 +30,15 @@ std::string one_line(const py::object& object) {
     return text;
 }
 
-/// Returns true for a list with True or False in it, which NumPy takes for numbers.
+/// Returns true for a list that contains True or False, because NumPy would convert them to numbers.
 bool has_flag(const py::object& list) {
     if (!py::isinstance<py::sequence>(list)) return false;
     return std::any_of(list.begin(), list.end(),
                        [](const py::handle& entry) { return PyBool_Check(entry.ptr()) != 0; });
 }
 
-/// Returns the factors of a scale along x, y and z, in the form of scenes: one number or three; negative ones mirror.
+/// Returns the scale factors along x, y and z. As in scenes, `scale` is one number or three numbers, and a negative
+/// factor mirrors.
 Vec3 factors_of(const py::object& scale) {
     constexpr const char* kExpected = "expected a finite number other than 0, such as 0.001 for mm, or three";
     std::optional<Vec3> factors;
@@ -52,14 +53,14 @@ Vec3 factors_of(const py::object& scale) {
             if (array.ndim() == 1 && list.size() == 3) factors = Vec3{list[0], list[1], list[2]};
         }
     } catch (const py::error_already_set&) {
-        factors.reset();  // lists of several lengths
+        factors.reset();  // the nested lists have different lengths
     }
     const bool is_good = factors && is_finite(*factors) && factors->x != 0.0 && factors->y != 0.0 && factors->z != 0.0;
     if (!is_good) throw InputError(fmt::format("scale: found {}, {}", one_line(scale), kExpected));
     return *factors;
 }
 
-/// Returns the distance within which vertices are joined, in m; nothing for None.
+/// Returns the distance within which vertices are joined, in m, or nothing for None.
 std::optional<double> distance_of(const py::object& merge) {
     if (merge.is_none()) return std::nullopt;
     const bool is_number = !PyBool_Check(merge.ptr()) && PyNumber_Check(merge.ptr()) != 0;
@@ -87,7 +88,8 @@ void place(ImportedMesh& imported, const std::optional<std::string>& up, const V
     }
 }
 
-/// Returns for each triangle the index of its combination of names in PolygonMesh::groups; empty without names.
+/// Returns, for each triangle, the index of its combination of names in PolygonMesh::groups. Returns an empty list if
+/// the file has no names.
 std::vector<std::uint32_t> group_numbers(const ImportedMesh& imported) {
     std::vector<std::uint32_t> numbers;
     if (imported.polygons.face_groups.empty()) return numbers;
@@ -96,7 +98,7 @@ std::vector<std::uint32_t> group_numbers(const ImportedMesh& imported) {
     return numbers;
 }
 
-/// Gives a mesh the names of faces from its file.
+/// Sets the names of a mesh's triangles from the names of faces in its file.
 void take_names(const py::object& mesh, const PolygonMesh& polygons, std::vector<std::uint32_t>&& numbers) {
     if (numbers.empty()) return;
     const auto text = [&](std::uint32_t name) {

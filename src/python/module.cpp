@@ -17,7 +17,7 @@ namespace {
 namespace py = pybind11;
 using namespace ricochet;
 
-/// Python classes of the errors; they live as long as the process.
+/// Python classes of the exceptions. They are never destroyed.
 struct ErrorClasses {
     PyObject* input = nullptr;
     PyObject* run = nullptr;
@@ -25,7 +25,7 @@ struct ErrorClasses {
 };
 ErrorClasses error_classes;
 
-/// Raises an exception. Messages may contain file names, which need not be UTF-8.
+/// Raises an exception. Messages may contain file names that are not valid UTF-8.
 void raise(PyObject* type, const char* what) {
     const auto size = static_cast<py::ssize_t>(std::strlen(what));
     const auto text = py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(what, size, "backslashreplace"));

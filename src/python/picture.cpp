@@ -21,11 +21,12 @@ namespace {
 
 constexpr Vec3 kColliderColor{0.21, 0.20, 0.19};
 constexpr Vec3 kPlaneColor{0.30, 0.30, 0.29};
-constexpr double kParticleAlbedo = 0.8;  // factor of the colour map, so that sunlit colours are not overexposed
-/// Radius of particles without one, as a fraction of the diagonal of the scene.
+constexpr double kParticleAlbedo = 0.8;  // factor on colours of the colour map, so that sunlit colours are not
+                                         // overexposed
+/// Drawn radius of particles without a radius, as a fraction of the scene's diagonal.
 constexpr double kPointSize = 0.004;
 
-/// Returns a whole number, and throws InputError if it is out of range.
+/// Returns the value. Throws InputError if the value is out of range.
 int within(int value, int lowest, int highest, const char* name) {
     if (value >= lowest && value <= highest) return value;
     throw InputError(fmt::format("{}: found {}, expected {} to {}", name, value, lowest, highest));
@@ -83,7 +84,8 @@ Vec3 vector_of(const py::handle& object, const char* name) {
     throw InputError(fmt::format("{}: found [{}, {}, {}], expected finite numbers", name, v.x, v.y, v.z));
 }
 
-/// Returns the camera. The caller's values override the scene's camera, which overrides a camera that shows everything.
+/// Returns the camera. The caller's values have the highest priority. The scene's camera comes next, then a camera that
+/// shows everything.
 Camera camera_of(const SimulationHandle& handle, const ViewSubject& subject, double aspect, const py::object& position,
                  const py::object& target, double field_of_view) {
     Camera camera = automatic_camera(subject, handle.up(), aspect);

@@ -54,7 +54,7 @@ py::dict attributes_of(const Handle& handle) {
     });
 }
 
-/// Returns the value of an entry, from a list with one value for all or one each.
+/// Returns the value for entry i. The list has either one value for all entries, or one value for each entry.
 double value_of(const Doubles& list, std::size_t i) { return list.size() == 1 ? *list.data() : list.data()[i]; }
 
 Doubles one_or_each(const py::handle& object, const char* name, std::size_t count) {
@@ -104,7 +104,7 @@ std::size_t remove_particles(Handle& handle, const py::object& ids) {
 
 // Contacts and totals.
 
-/// Contact in the layout of a structured array.
+/// Contact in the memory layout of NumPy's structured array.
 struct Contact {
     double time;
     std::uint64_t particle;
@@ -162,7 +162,7 @@ ContactsObject take_contacts(Handle& handle) {
     return py::object(array.attr("view")(result("Contacts")));
 }
 
-/// Returns the index of a collider that is given by index or by name.
+/// Returns the index of a collider. `which` is its index or its name.
 std::size_t collider_of(const Simulation& simulation, const py::handle& which) {
     const auto& colliders = simulation.colliders();
     if (py::isinstance<py::str>(which)) {
@@ -260,7 +260,7 @@ std::string text_on_statistics() {
 
 // Steps.
 
-/// Returns the number of steps from the present state to a time, in s.
+/// Returns the number of steps from the current state to a time, in s.
 std::uint64_t steps_to(const Simulation& simulation, double time) {
     if (!(time >= 0.0)) throw InputError(fmt::format("until: found {}, expected a time of at least 0 s", time));
     const double steps = std::ceil(time / simulation.options().time_step - 1e-6);
@@ -306,7 +306,7 @@ void deallocate(PyObject* object) {
     py::detail::pybind11_object_dealloc(object);
 }
 
-/// Enables garbage collection of cycles: a force may be a method of the object that owns the simulation.
+/// Enables garbage collection of cycles. Reason: a force can be a method of the object that owns the simulation.
 void take_part_in_garbage_collection(PyHeapTypeObject* heap_type) {
     PyTypeObject& type = heap_type->ht_type;
     type.tp_flags |= Py_TPFLAGS_HAVE_GC;

@@ -32,17 +32,18 @@ constexpr const char* kBallisticWarning =
     "forces: with them the integrator ballistic moves all particles like velocity_verlet; set simulation.integrator to "
     "\"velocity_verlet\" or another one";
 
-/// First word of every saved state. Its last digit changes with the layout.
+/// First word of every saved state. Its last digit is the version of the layout.
 constexpr std::uint64_t kSavedFormat = 0x5249434f50590001ULL;
 
 /// A saved state.
 struct Saved {
     std::uint64_t scene_forces = 0;
     std::string forces;  ///< names of the user's forces
-    std::string state;   ///< state of the library, which ends with a checksum
+    std::string state;   ///< state from Simulation::save(), which ends with a checksum
 };
 
-/// Returns a source of these bytes. It throws InputError if they end too early.
+/// Returns a source that reads from `rest` and removes the read bytes. The source throws InputError if too few bytes
+/// are left.
 ByteSource source_of(std::span<const char>& rest) {
     return [&rest](std::span<std::byte> part) {
         if (part.size() > rest.size()) throw InputError("restore: the saved state ends too early");
@@ -61,7 +62,7 @@ bool is_whole(const std::string& state) {
     return hash.value() == checksum;
 }
 
-/// Reads a saved state and makes all checks that are possible before a simulation is changed.
+/// Reads a saved state. Makes all checks that are possible without changing a simulation.
 Saved saved_in(const std::string& bytes) {
     std::span<const char> rest(bytes);
     BinaryReader reader(source_of(rest));
@@ -82,20 +83,20 @@ Saved saved_in(const std::string& bytes) {
     return saved;
 }
 
-/// Checks for Ctrl-C and shows progress during a run, and takes the GIL only for that time. Only the thread that
-/// created the Watch checks.
+/// Checks for Ctrl-C and shows progress during a run. Holds the GIL only during a check. Only the thread that created
+/// the Watch makes checks.
 class Watch {
 public:
     explicit Watch(const py::object& progress) : progress_(progress) {}
 
-    /// Returns false if the run must end. Called between steps, from any thread.
+    /// Returns false if the run must end. Any thread may call it, between steps.
     [[nodiscard]] bool goes_on() {
         stay_if_ending();
         look();
         return !has_error_;
     }
-    /// Returns false if the run must end and the step has not finished for some time. Called within a step, from any
-    /// thread.
+    /// Returns false if the run must end and the step has continued for kPatience since then. Any thread may call it,
+    /// within a step.
     [[nodiscard]] bool goes_on_within() {
         look();
         return !has_error_ || Clock::now() < latest_;
@@ -129,7 +130,7 @@ private:
     std::atomic<bool> has_error_ = false;
 };
 
-/// Number of particles up to which one thread moves all. Then a single step needs no separate thread that checks for
+/// Largest number of particles that a single thread moves. A single step then needs no separate thread that checks for
 /// Ctrl-C.
 constexpr std::size_t kFewParticles = 256;
 
@@ -147,7 +148,7 @@ SimulationHandle::SimulationHandle(std::string text, std::string file, std::vect
     scene_.setup.options.verify = scene_.setup.options.verify || verifies;
     const Vec3 down = uniform_acceleration(scene_.setup);
     if (is_finite(down) && length(down) > 0.0) up_ = -normalized(down);
-    // Removes the warning that nothing will move, because particles can be added later.
+    // Removes the warning that no particle will move, because particles can be added later.
     std::erase_if(scene_.warnings, [](const std::string& warning) { return warning.ends_with("nothing will move"); });
     if (!forces_.empty() && scene_.setup.options.integrator.kind == IntegratorKind::ballistic) {
         scene_.warnings.emplace_back(kBallisticWarning);
@@ -164,7 +165,7 @@ SimulationHandle::~SimulationHandle() {
     try {
         keep_lent();
     } catch (...) {
-        (void)simulation_.release();  // no memory for a copy: the arrays keep the simulation's memory
+        (void)simulation_.release();  // out of memory for a copy, so the simulation is leaked and the arrays stay valid
     }
 }
 
@@ -183,10 +184,10 @@ void SimulationHandle::advance(std::uint64_t count, const py::object& progress) 
             try {
                 simulation_->advance(
                     count, [&] { return watch.goes_on(); }, [&] { return watch.goes_on_within(); });
-            } catch (const StoppedError&) {  // the watch has the reason
+            } catch (const StoppedError&) {  // watch.rethrow() throws the reason
             }
         };
-        // Longer work runs on a separate thread, because this thread must check for Ctrl-C instead of waiting in
+        // Longer work runs on a separate thread, because this thread must check for Ctrl-C and must not wait in
         // parallel loops.
         const bool is_short = count == 1 && simulation_->particles().size() <= kFewParticles;
         is_short ? advance() : run_beside(advance, kLookAround, [&] { (void)watch.goes_on(); });

@@ -1,5 +1,6 @@
 /// \file
-/// A simulation owned by Python: it steps while other Python threads run, and lends its arrays without a copy.
+/// A simulation that Python owns. It makes steps while other Python threads run. Python arrays can refer to its memory
+/// without a copy.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -18,46 +19,47 @@ namespace ricochet::python {
 
 namespace py = pybind11;
 
-/// Particles that Python arrays show. They are the simulation's own memory until the simulation changes. Then the
-/// arrays keep this memory, and the simulation continues with a copy.
+/// Particles that Python arrays refer to. They are in the simulation's own memory until the simulation changes. The
+/// arrays then keep this memory, and the simulation continues with a copy.
 struct LentParticles {
     const Particles* shown = nullptr;
-    Particles kept;  ///< memory of the arrays after that
+    Particles kept;  ///< memory of the arrays after the simulation has changed
 };
 
-/// Forces by the user, made by force_of().
+/// Forces that the user has written; force_of() creates them.
 using UserForces = std::vector<std::shared_ptr<const ParticlesForce>>;
 
 class SimulationHandle {
 public:
-    /// text: a scene. file: its name in messages; paths in the scene are relative to its folder. forces: added to the
-    /// forces of the scene.
+    /// text: text of a scene. file: file name in messages; paths in the scene are relative to this file's folder.
+    /// forces: forces in addition to those in the scene.
     SimulationHandle(std::string text, std::string file, std::vector<std::string> overrides, bool keeps_contacts,
                      bool verifies, UserForces forces);
     ~SimulationHandle();
     SimulationHandle(const SimulationHandle&) = delete;
     SimulationHandle& operator=(const SimulationHandle&) = delete;
 
-    /// Calls use(simulation) with the GIL held. Throws RunError while another thread steps it.
+    /// Calls use(simulation) with the GIL held. Throws RunError while another thread steps the simulation.
     template <class Use>
     auto read(const Use& use) const {
         const Turn turn(*this);
         return use(const_cast<const Simulation&>(*simulation_));
     }
-    /// Calls change(simulation), which may change it between steps. Lent arrays keep their values.
+    /// Calls change(simulation), which may change the simulation between steps. Arrays that refer to its particles keep
+    /// their values.
     template <class Change>
     auto change(const Change& change) {
         const Turn turn(*this);
         keep_lent();
         return change(*simulation_);
     }
-    /// Makes at most `count` steps without the GIL. Ctrl-C ends it with its exception, after the current step, or
-    /// within the step if it takes long. progress (None or a callable without arguments) is called some ten times a
-    /// second. An exception of progress also ends it.
+    /// Makes at most `count` steps without the GIL. Ctrl-C ends the call with an exception, after the current step, or
+    /// within the step if it takes long. progress is None or a callable without arguments. It is called about ten times
+    /// a second. An exception of progress also ends the call.
     void advance(std::uint64_t count, const py::object& progress);
 
     [[nodiscard]] std::shared_ptr<LentParticles> lend() const;
-    /// Returns the contacts since the last call. Throws InputError without keeps_contacts.
+    /// Returns the contacts since the last call. Throws InputError if keeps_contacts is false.
     [[nodiscard]] std::vector<ContactRecord> take_contacts();
 
     [[nodiscard]] const SceneDescription& scene() const { return scene_; }
@@ -69,14 +71,14 @@ public:
     [[nodiscard]] bool keeps_contacts() const { return keeps_contacts_; }
     [[nodiscard]] bool verifies() const { return verifies_; }
     [[nodiscard]] const UserForces& forces() const { return forces_; }
-    /// Returns the state of the library, and the names of the forces.
+    /// Returns the bytes of Simulation::save(), together with the names of the forces.
     [[nodiscard]] std::string save() const;
-    /// Restores a state. Throws InputError for bytes that are not from save(), or from a simulation with other forces;
-    /// then nothing has changed. Otherwise it throws like Simulation::restore().
+    /// Restores a state. Throws InputError if the bytes are not from save(), or if the saved simulation had other
+    /// forces. In these cases nothing has changed. Otherwise throws like Simulation::restore().
     void restore(const std::string& bytes);
 
 private:
-    /// Exclusive use by one thread at a time.
+    /// Scope in which one thread uses the simulation exclusively. Throws RunError if another thread uses it.
     class Turn {
     public:
         explicit Turn(const SimulationHandle& handle);
@@ -96,7 +98,7 @@ private:
     std::vector<std::string> overrides_;
     bool keeps_contacts_;
     bool verifies_;
-    SceneDescription scene_;  ///< without its setup
+    SceneDescription scene_;  ///< the setup was moved into the simulation
     UserForces forces_;
     Vec3 up_{0, 0, 1};
     std::unique_ptr<Simulation> simulation_;
@@ -105,11 +107,11 @@ private:
     mutable std::atomic<bool> is_busy_ = false;
 };
 
-/// Returns a force from a Python function or a compiled one; its number is for messages. Throws InputError for anything
-/// else.
+/// Returns the force of a Python function or of a compiled function. number: index of the force in messages. Throws
+/// InputError for other objects.
 [[nodiscard]] std::shared_ptr<const ParticlesForce> force_of(const py::object& force, std::size_t number);
-/// Visits the functions of forces, for Python's search for cycles. A force keeps its function alive, which may keep the
-/// simulation alive.
+/// Visits the functions of forces for Python's garbage collector. A force keeps its function alive, and the function
+/// may keep the simulation alive. This would be an undetected cycle.
 [[nodiscard]] int visit_functions(const UserForces& forces, visitproc visit, void* arg);
 void let_go_of_functions(const UserForces& forces);
 void bind_picture(py::class_<SimulationHandle>& type);

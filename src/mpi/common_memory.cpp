@@ -38,8 +38,8 @@ bool write_all(int file, std::span<const std::byte> bytes) {
     return true;
 }
 
-/// Returns a file in memory with the bytes, or -1 if there is not enough memory. It has no name in any folder, so it
-/// vanishes with the last process that maps it, even if that process crashes.
+/// Returns the descriptor of a file in memory with these bytes, or -1 if memory is short. The file has no name in any
+/// folder. The system therefore deletes it with the last process that maps it, even if that process crashes.
 int file_of(std::span<const std::byte> bytes) {
     const int file = ::memfd_create("ricochet", MFD_CLOEXEC);
     if (file < 0 || write_all(file, bytes)) return file;
@@ -54,8 +54,9 @@ void* mapped(int file, std::size_t size) {
     return pages == MAP_FAILED ? nullptr : pages;
 }
 
-/// Works in two steps, so that every rank has mapped the shared pages before any rank drops its own. The first rank
-/// keeps its file open until all ranks have opened it.
+/// Replaces equal pages of the ranks by shared pages. Returns false if the pages cannot be shared. Works in two steps,
+/// so that every rank has mapped the shared pages before any rank drops its own pages. The first rank keeps its file
+/// open until all ranks have opened it.
 bool have_in_common(std::span<const std::byte> list, const Neighbours& here) {
     const bool is_first = here.is_first();
     const File own(is_first ? file_of(list) : -1);
@@ -63,7 +64,7 @@ bool have_in_common(std::span<const std::byte> list, const Neighbours& here) {
     here.tell(told);
     if (told[1] < 0) return false;
     const auto size = static_cast<std::size_t>(told[2]);
-    // Opened by the path in the first rank's process, because the file has no name.
+    // The file has no name, so it is opened through the descriptor of the first rank's process.
     const File other(is_first ? -1
                               : ::open(fmt::format("/proc/{}/fd/{}", told[0], told[1]).c_str(), O_RDONLY | O_CLOEXEC));
     void* const pages = mapped(is_first ? own.number() : other.number(), size);
@@ -75,7 +76,7 @@ bool have_in_common(std::span<const std::byte> list, const Neighbours& here) {
         void* const place = const_cast<std::byte*>(list.data());
         const bool is_there = ::mremap(pages, size, size, MREMAP_MAYMOVE | MREMAP_FIXED, place) != MAP_FAILED;
         if (here.all(is_there)) return true;
-        throw RunError("ranks: memory for the meshes is short");  // the old pages may be gone
+        throw RunError("ranks: memory for the meshes is short");  // the old pages may already be unmapped
     }
     if (pages != nullptr) (void)::munmap(pages, size);
     if (!are_alike) throw RunError("ranks: the meshes of processes on this machine differ, expected the same files");

@@ -1,5 +1,5 @@
 /// \file
-/// Shares equal pages of the ranks of one machine.
+/// Sharing of memory pages with equal content between the ranks of one machine.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ public:
     [[nodiscard]] virtual bool all(bool is_so) const = 0;
 };
 
-/// See Ranks::have_in_common().
+/// Makes the ranks of one machine share equal pages. Returns the number of shared bytes; see Ranks::have_in_common().
 [[nodiscard]] std::uint64_t have_in_common(std::span<const std::span<const std::byte>> pages, const Neighbours& here);
 
 }  // namespace ricochet::mpi

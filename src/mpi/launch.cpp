@@ -10,8 +10,8 @@
 namespace ricochet::mpi {
 namespace {
 
-// Variables of Open MPI's mpirun and of PMIx and PMI servers (srun, other mpiruns). PMIx has no variable for the number
-// of processes.
+// Environment variables that Open MPI's mpirun, and PMIx and PMI servers (srun and other versions of mpirun) set. PMIx
+// has no variable for the number of processes.
 constexpr std::array kRanks = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
 constexpr std::array kSizes = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"};
 

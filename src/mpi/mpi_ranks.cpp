@@ -18,19 +18,19 @@
 namespace ricochet::mpi {
 namespace {
 
-/// Largest message, in bytes. Counts of MPI are ints, so longer messages are split.
+/// Largest message, in bytes. Longer messages are split, because MPI stores counts as int.
 constexpr std::size_t kPiece = std::size_t{1} << 30U;
 
 bool joined = false;
-bool agreed = false;  // to end, see agree_to_end()
+bool agreed = false;  // true after agree_to_end()
 
-/// Time for which a rank polls without sleeping: about the duration of a message if all ranks are ready.
+/// Time for which a rank polls without sleeping. It is about the duration of a message if all ranks are ready.
 constexpr std::chrono::microseconds kSpin{100};
-/// Interval of later polls. Between them the rank sleeps, so that the ranks it waits for can use the processor.
+/// Interval of later polls. The rank sleeps between polls, so that the awaited ranks can use the processor.
 constexpr std::chrono::microseconds kPause{50};
 
-/// Waits for a request. MPI's own waiting occupies a whole processor. With more ranks than processors it loses whole
-/// time slices to other ranks.
+/// Waits for a request. MPI's own wait functions are not used, because they occupy a whole processor. With more ranks
+/// than processors, a waiting rank would take whole time slices from ranks that have work.
 void wait_for(MPI_Request& request) {
     const auto begin = std::chrono::steady_clock::now();
     for (int is_done = 0;;) {
@@ -181,7 +181,7 @@ private:
 
 std::shared_ptr<Ranks> join() {
     if (!was_launched()) return nullptr;
-    // MPI need not yield the processor, because wait_for() does.
+    // MPI does not need to yield the processor, because wait_for() sleeps.
     (void)::setenv("OMPI_MCA_mpi_yield_when_idle", "0", 0);
     int provided = 0;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
@@ -195,7 +195,8 @@ std::shared_ptr<Ranks> join() {
 
 bool has_joined() { return joined; }
 
-// Ranks that mpirun binds to separate processors share none. Unbound ranks share all processors of the machine.
+// If mpirun binds ranks to separate processors, they share no processor. Unbound ranks share all processors of the
+// machine.
 std::size_t ranks_on_these_processors() {
     if (!joined) return 1;
     MPI_Comm here = MPI_COMM_NULL;

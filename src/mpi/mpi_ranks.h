@@ -24,9 +24,9 @@ namespace ricochet::mpi {
 void agree_to_end();
 
 /// Ends the use of MPI. Call it at the end of the process, after the last output. Does nothing if the process was
-/// started alone. After agree_to_end(), waits until all ranks have called this function, because a launcher could kill
-/// all ranks if one ended early with an error. Without agree_to_end(), aborts all ranks, including this one, with this
-/// exit code.
+/// started alone. After agree_to_end(), waits until all ranks have called this function. Otherwise a launcher could
+/// kill all ranks when one rank ends early with an error. Without agree_to_end(), aborts all ranks, including this one,
+/// with this exit code.
 void end_process(int exit_code);
 
 }  // namespace ricochet::mpi

@@ -17,12 +17,12 @@ std::atomic<std::size_t> peak{0};
 
 constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
 std::atomic<std::uint64_t> calls_made{0};
-std::atomic<std::uint64_t> first_failure{kNever};  // as a value of calls_made
+std::atomic<std::uint64_t> first_failure{kNever};  // value of calls_made at the first call that fails
 std::atomic<bool> later_fail{false};
 
-// Returns true if the code belongs to Embree. If an allocation inside Embree 3.13 fails, a thread's allocator stays
-// bound to a destroyed one, and the next hierarchy is corrupt. The caller cannot repair that, so Embree's allocations
-// never fail.
+// Returns true if the code belongs to Embree. If an allocation inside Embree 3.13 fails, a thread's allocator keeps a
+// reference to a destroyed allocator, and the next BVH is corrupt. The caller cannot repair that, so Embree's
+// allocations never fail.
 bool is_of_embree(const void* code) noexcept {
     Dl_info info{};
     return ::dladdr(code, &info) != 0 && info.dli_fname != nullptr &&
@@ -57,7 +57,8 @@ void* allocate(std::size_t size, std::align_val_t alignment, const void* caller)
     return counted(memory);
 }
 
-// Follows the standard library: calls the new-handler before it throws.
+// Returns the memory if it is not null. Otherwise calls the new-handler and throws std::bad_alloc, like the standard
+// library.
 void* required(void* memory) {
     if (memory != nullptr) return memory;
     if (const std::new_handler handler = std::get_new_handler()) handler();
@@ -72,8 +73,8 @@ void release(void* memory) noexcept {
 
 }  // namespace
 
-// Allocations that request far more memory than the machine has count too, because they fail: bad_alloc is not
-// InputError.
+// Requests for far more memory than the machine has also go through these operators. They fail with bad_alloc, which a
+// test distinguishes from the expected InputError.
 void* operator new(std::size_t size) { return required(allocate(size, __builtin_return_address(0))); }
 void* operator new[](std::size_t size) { return required(allocate(size, __builtin_return_address(0))); }
 void* operator new(std::size_t size, std::align_val_t alignment) {

@@ -1,6 +1,6 @@
 /// \file
-/// Counts the memory that a test program has in use, and makes allocations fail. One source file of the program must
-/// define the counting operators: allocation_guard.cpp.
+/// Counts the memory that a test program has in use, and makes allocations fail. The program must compile
+/// allocation_guard.cpp, which defines the counting operators.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace ricochet::test {
 
-/// Measures the largest heap memory in use at one time, over all threads, beyond the memory in use at its construction.
-/// Only one guard may exist at a time.
+/// Measures the peak of heap memory in use by all threads, minus the memory in use at the guard's construction. Only
+/// one guard may exist at a time.
 class AllocationGuard {
 public:
     AllocationGuard();
@@ -22,13 +22,13 @@ private:
 /// Returns the bytes of the whole program that operator new has allocated and that are not freed yet.
 [[nodiscard]] std::size_t bytes_in_use();
 
-/// Makes one call of operator new fail, over all threads, during the lifetime of the object. The call throws
-/// std::bad_alloc; its non-throwing form returns null. Embree's own calls never fail. Only one fault may exist at a
-/// time.
+/// Makes one call of operator new fail during the lifetime of the object. Calls of all threads count. The failing call
+/// throws std::bad_alloc, or returns null in its non-throwing form. Embree's own calls never fail. Only one fault may
+/// exist at a time.
 class AllocationFault {
 public:
     enum class Later { succeed, fail };
-    /// number: the call that fails, counted from 1; later: the fate of the calls after it.
+    /// number: index of the call that fails, counted from 1. later: whether the calls after it succeed or fail.
     explicit AllocationFault(std::uint64_t number, Later later = Later::succeed);
     ~AllocationFault();
     AllocationFault(const AllocationFault&) = delete;

@@ -1,6 +1,6 @@
 /// \file
-/// Numbers of repetitions for random tests: the full number in an optimised build, fewer in slower builds, more in a
-/// long run.
+/// Numbers of repetitions for random tests. Optimised builds use the full number, slower builds use fewer repetitions,
+/// and long runs use more.
 #pragma once
 
 #include <algorithm>
@@ -26,8 +26,8 @@ inline constexpr bool kOptimised = true;
 inline constexpr bool kOptimised = false;
 #endif
 
-/// Returns `full` in an optimised build, a tenth of it without optimisation, a fiftieth under a sanitizer, and at least
-/// 1. A test must be valid for every count, so none of its claims may depend on the number of repetitions.
+/// Returns `full` in an optimised build, a tenth of it without optimisation, and a fiftieth under a sanitizer. The
+/// result is at least 1. A test must pass with every count, so its claims must not depend on the number of repetitions.
 [[nodiscard]] constexpr int scaled(int full) {
     const int divisor = kSanitized ? 50 : (kOptimised ? 1 : 10);
     return std::max(1, full / divisor);
@@ -38,7 +38,7 @@ inline constexpr bool kOptimised = false;
     return std::getenv("RICOCHET_LONG_TESTS") != nullptr;  // NOLINT(concurrency-mt-unsafe): nothing sets it
 }
 
-/// Returns the factor for the number of cases: `in_a_long_run` in a long run, else 1.
+/// Returns the factor on the number of cases. It is `in_a_long_run` in a long run, otherwise 1.
 [[nodiscard]] inline int case_factor(int in_a_long_run) noexcept { return is_long_run() ? in_a_long_run : 1; }
 
 }  // namespace ricochet::test

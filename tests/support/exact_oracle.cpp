@@ -25,7 +25,7 @@ struct Dyadic {
     }
 };
 
-/// Returns the points multiplied by one power of two that makes all their coordinates integers.
+/// Multiplies all points by one power of two, chosen so that all coordinates become integers.
 template <std::size_t N>
 std::array<IntegerPoint, N> whole_points(const std::array<Vec3, N>& points) {
     int least = std::numeric_limits<int>::max();
@@ -44,14 +44,15 @@ std::array<IntegerPoint, N> whole_points(const std::array<Vec3, N>& points) {
     return whole;
 }
 
-/// The form coefficients . variables + constant, which is constrained to be = 0 or >= 0.
+/// The linear form coefficients . variables + constant. An equation requires it to be 0, an inequality requires it to
+/// be >= 0.
 struct LinearForm {
     std::array<Integer, 3> coefficients;
     Integer constant;
 };
 
-/// Adds multiples of two forms such that variable v cancels. `of_form` is positive, so an inequality keeps its
-/// direction.
+/// Returns of_form * form + of_other * other. The callers choose factors with which a variable cancels. `of_form` is
+/// positive, so an inequality keeps its direction.
 LinearForm combined(const LinearForm& form, const Integer& of_form, const LinearForm& other, const Integer& of_other) {
     LinearForm sum;
     for (std::size_t v = 0; v < 3; ++v) {
@@ -61,7 +62,7 @@ LinearForm combined(const LinearForm& form, const Integer& of_form, const Linear
     return sum;
 }
 
-/// Eliminates variable v from the form with an equation that contains it.
+/// Eliminates variable v from the form. The equation must contain this variable.
 LinearForm substituted(const LinearForm& form, const LinearForm& equation, std::size_t v) {
     const Integer& pivot = equation.coefficients[v];
     const Integer factor = pivot > 0 ? -form.coefficients[v] : form.coefficients[v];
@@ -106,7 +107,7 @@ Integer determinant3(const IntegerPoint& a, const IntegerPoint& b, const Integer
     return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-/// Returns exact_orient3d in the scale of whole_points.
+/// Returns the determinant of exact_orient3d for points scaled by whole_points.
 Integer whole_orient3d(const IntegerPoint& a, const IntegerPoint& b, const IntegerPoint& c, const IntegerPoint& d) {
     return determinant3(b, c, d) - determinant3(a, c, d) + determinant3(a, b, d) - determinant3(a, b, c);
 }
@@ -122,7 +123,7 @@ Rational exact(double x) {
 Rational exact(const DoubleDouble& x) { return exact(x.hi) + exact(x.lo); }
 
 Rational exact_orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-    // One more point with a coordinate of 1 gives the scale.
+    // The additional point (1, 0, 0) is scaled too, so its x coordinate is the scale factor.
     const auto w = whole_points(std::array{a, b, c, d, Vec3{1.0, 0.0, 0.0}});
     return Rational(whole_orient3d(w[0], w[1], w[2], w[3]), w[4][0] * w[4][0] * w[4][0]);
 }

@@ -15,13 +15,13 @@ namespace ricochet::test {
 
 using Json = nlohmann::json;
 
-/// A document and the bytes of its only buffer.
+/// A glTF document and the bytes of its only buffer.
 struct GltfFile {
     Json document;
     std::string binary;
 };
 
-/// Adds an accessor for these bytes with its own buffer view. Returns the index of the accessor.
+/// Adds an accessor for these bytes, with a separate buffer view. Returns the index of the accessor.
 inline std::size_t add_accessor(GltfFile& file, const std::string& bytes, int component_type, std::size_t count,
                                 const std::string& type) {
     Json& document = file.document;
@@ -62,7 +62,7 @@ inline GltfFile gltf_of(const std::vector<Vec3>& points, const std::vector<std::
     return file;
 }
 
-/// Corners of a cube of edge 1 centred at the origin. Its triangles, below, are wound outward.
+/// Corners of a cube with edge length 1 centred at the origin. The triangles in kCubeTriangles are wound outward.
 inline const std::array<Vec3, 8> kCubeCorners = {Vec3{-0.5, -0.5, -0.5}, Vec3{0.5, -0.5, -0.5}, Vec3{-0.5, 0.5, -0.5},
                                                  Vec3{0.5, 0.5, -0.5},   Vec3{-0.5, -0.5, 0.5}, Vec3{0.5, -0.5, 0.5},
                                                  Vec3{-0.5, 0.5, 0.5},   Vec3{0.5, 0.5, 0.5}};
@@ -79,8 +79,8 @@ inline constexpr std::array<std::array<std::uint32_t, 3>, 12> kCubeTriangles = {
                                                                                  {1, 3, 7},
                                                                                  {1, 7, 5}}};
 
-/// Returns the cube as programs export it: every triangle has its own points. Its mesh is below two nodes, which scale
-/// it by (2, 1, 4), rotate it by a quarter turn about z and move it by (1, 2, 3).
+/// Returns a file of the cube. As in files of common exporters, every triangle has separate points. Two nested nodes
+/// scale the mesh by (2, 1, 4), rotate it by a quarter turn about z and move it by (1, 2, 3).
 inline GltfFile gltf_cube() {
     std::vector<Vec3> points;
     std::vector<std::uint32_t> indices;

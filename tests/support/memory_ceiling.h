@@ -1,6 +1,6 @@
 /// \file
-/// Limit on the memory of this process and its child processes. It proves that excessive requests are refused before
-/// memory is allocated for them.
+/// Limit on the memory of this process and its child processes. Tests use it to show that excessive requests are
+/// refused before memory is allocated.
 #pragma once
 
 #include <sys/resource.h>
@@ -10,8 +10,8 @@
 
 namespace ricochet::test {
 
-/// Limits memory (RLIMIT_DATA) during its lifetime: this process may allocate the given bytes beyond its current use.
-/// Its child processes have the same absolute limit.
+/// Limits memory (RLIMIT_DATA) during the lifetime of the object. This process may allocate the given bytes beyond its
+/// current use. Its child processes have the same absolute limit.
 class MemoryCeiling {
 public:
     explicit MemoryCeiling(double bytes) {

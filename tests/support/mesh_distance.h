@@ -11,7 +11,7 @@
 
 namespace ricochet::testing {
 
-/// Returns the distance, in m.
+/// Returns the distance of a point from the mesh, in m.
 inline double distance_from(const TriangleMesh& mesh, const Vec3& p) {
     double least = std::numeric_limits<double>::infinity();
     for (const auto& [a, b, c] : mesh.triangles) {

@@ -1,5 +1,5 @@
 /// \file
-/// The parity oracle, which the library's own verifier also uses.
+/// Declares the parity oracle for tests. The library's verifier uses the same oracle.
 #pragma once
 
 #include "ricochet/verify/parity.h"

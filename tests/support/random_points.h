@@ -1,5 +1,5 @@
 /// \file
-/// Many weighted points, for sums over all of them.
+/// Sets of weighted points, for tests of sums over many points.
 #pragma once
 
 #include <cmath>
@@ -16,8 +16,9 @@ struct WeightedPoints {
     std::vector<double> weights;
 };
 
-/// Returns points distributed as in a globular cluster, with unit scale and a radius of at most ten. The weights add up
-/// to 1 and differ by factors up to 3. Source: S. J. Aarseth, M. Henon, R. Wielen, Astron. Astrophys. 37, 1974.
+/// Returns points in a Plummer distribution, which models a globular cluster. The scale is 1, and the largest radius is
+/// ten. The weights add up to 1 and differ by factors up to 3. Source: S. J. Aarseth, M. Henon, R. Wielen, Astron.
+/// Astrophys. 37, 1974.
 inline WeightedPoints plummer_ball(std::size_t count, std::uint64_t seed) {
     RandomSequence draws(seed, 1, 0);
     WeightedPoints points;

@@ -30,7 +30,8 @@ Vec3 random_point(RandomSequence& random) {
     return {x, y, between(random, -1.0, 1.0)};
 }
 
-/// Returns a point of a coarse grid, so that coincidences of every kind are frequent.
+/// Returns a point of a coarse grid. Coincidences of every kind, such as common vertices and coplanar points, are then
+/// frequent.
 Vec3 grid_point(RandomSequence& random) {
     const int x = whole_between(random, -3, 3);
     const int y = whole_between(random, -3, 3);
@@ -51,7 +52,7 @@ Corners axis_aligned_triangle(RandomSequence& random) {
     return corners;
 }
 
-/// Returns a triangle with exactly collinear corners, which sometimes coincide.
+/// Returns a triangle with exactly collinear corners. Some of the corners can coincide.
 Corners degenerate_triangle(RandomSequence& random) {
     const Vec3 a = grid_point(random);
     const Vec3 step = grid_point(random);
@@ -71,7 +72,7 @@ Corners triangle_of_kind(std::uint64_t kind, RandomSequence& random) {
             return axis_aligned_triangle(random);
         case 3:
             return degenerate_triangle(random);
-        case 4: {  // nearly collinear: rounded onto a line
+        case 4: {  // nearly collinear: the third corner is on the line of the others up to rounding
             const Vec3 a = random_point(random);
             const Vec3 b = random_point(random);
             return {a, b, a + between(random, -1.0, 2.0) * (b - a)};
@@ -81,14 +82,14 @@ Corners triangle_of_kind(std::uint64_t kind, RandomSequence& random) {
     }
 }
 
-/// Returns a rounded point of the triangle's plane. With on_border it is on the line of an edge.
+/// Returns a point of the triangle's plane, up to rounding. With on_border, the point is on the line of an edge.
 Vec3 plane_point(const Corners& t, bool on_border, RandomSequence& random) {
     const double u = between(random, -0.5, 1.5);
     const double v = on_border ? 0.0 : between(random, -0.5, 1.5);
     return t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
 }
 
-/// Returns a point of the plane that is exact for corners on the grid.
+/// Returns a point of the triangle's plane. The point is exact if the corners are on the grid.
 Vec3 whole_plane_point(const Corners& t, RandomSequence& random) {
     const int u = whole_between(random, -2, 4);
     const int v = whole_between(random, -2, 4);
@@ -120,7 +121,7 @@ std::array<Vec3, 2> segment_of_kind(std::uint64_t kind, const Corners& t, Random
     switch (kind) {
         case 0:  // nearly coplanar
             return {nudged(plane_point(t, false, random), random), nudged(plane_point(t, false, random), random)};
-        case 1:  // coplanar, exactly when the corners allow it
+        case 1:  // coplanar; exactly coplanar if the corners are on the grid
             return {whole_plane_point(t, random), whole_plane_point(t, random)};
         case 2:  // through a vertex
             return aimed_through(t[static_cast<std::size_t>(whole_between(random, 0, 2))], random);
@@ -144,7 +145,8 @@ std::array<Vec3, 2> segment_of_kind(std::uint64_t kind, const Corners& t, Random
     }
 }
 
-/// Some placements round. They deliberately turn exact coincidences into near ones.
+/// Returns the point after a shift or a scale. Some placements round, which deliberately turns exact coincidences into
+/// near coincidences.
 Vec3 placed(const Vec3& p, std::uint64_t placement) {
     switch (placement) {
         case 1:

@@ -1,6 +1,7 @@
 /// \file
-/// Random segments and triangles that are hard for predicates: rounded out of a plane, aimed at vertices and edges,
-/// grazing, slender, degenerate, far from the origin, tiny and huge.
+/// Random segments and triangles that are difficult for predicates. Segments are nearly coplanar with the triangle,
+/// grazing, or aimed at vertices and edges. Triangles can be slender or degenerate. Cases are also far from the origin,
+/// tiny or huge.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +20,8 @@ struct SegmentTriangle {
     Vec3 c;
 };
 
-/// Returns case `index` of the family that `seed` selects. Successive cases cycle through all combinations of a kind of
-/// triangle, a kind of segment and a placement. All coordinates are in the range for which the predicates are exact.
+/// Returns case `index` of the random family that `seed` selects. Successive cases cycle through all combinations of
+/// triangle kind, segment kind and placement. All coordinates are in the range for which the predicates are exact.
 [[nodiscard]] SegmentTriangle segment_triangle_case(std::uint64_t seed, std::uint64_t index);
 
 /// Returns a description of the case in words and hexadecimal digits, for the message of a failing test.

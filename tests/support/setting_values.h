@@ -1,5 +1,5 @@
 /// \file
-/// Values for the lines of tables of settings.
+/// Valid and invalid values of settings, for tests of the tables of settings.
 #pragma once
 
 #include <cmath>
@@ -37,7 +37,7 @@ bool set_outside(Count& value, const Range& range) {
     return true;
 }
 
-/// Sets a value inside the range of every table that no setting has by default.
+/// Sets a value that is inside the range of every setting and differs from every default.
 inline void set_inside(double& value) { value = 0.375; }
 inline void set_inside(std::optional<double>& value) { value = 0.375; }
 inline void set_inside(Vec3& value) { value = {1.0, 2.0, 3.0}; }

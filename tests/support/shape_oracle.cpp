@@ -7,7 +7,7 @@ namespace ricochet::testing {
 namespace {
 
 constexpr int kHalvings = 40;
-constexpr int kMostSteps = 60;  // of Newton's method, which converges from below
+constexpr int kMostSteps = 60;  // largest number of steps of Newton's method, which converges from below
 
 Real square(const Real& x) { return x * x; }
 
@@ -75,15 +75,15 @@ Real ShapeOracle::value(const RealVector& p) const {
     return std::max(form(y), over_cap);
 }
 
-/// The largest root t of sum (a y / (a^2 + t))^2 = 1 gives the point y a^2 / (a^2 + t). If the sum stays below 1 down
-/// to t = -smallest^2, the point is on the medial axis.
+/// Let t be the largest root of sum (a y / (a^2 + t))^2 = 1, over the half axes a. The nearest point is then y a^2 /
+/// (a^2 + t). If the sum is below 1 for all t down to -smallest^2, the given point is on the medial axis.
 ShapeOracle::Nearest ShapeOracle::nearest_around(const RealVector& y) const {
     const auto end = half_.begin() + static_cast<std::ptrdiff_t>(round_axes_);
     const std::size_t smallest = static_cast<std::size_t>(std::min_element(half_.begin(), end) - half_.begin());
     const Real smallest_square = square(Real(half_[smallest]));
     Real reach = 0;
     for (std::size_t i = 0; i < round_axes_; ++i) reach += square(y[i] * half_[i]);
-    // Uses u = t + smallest^2 > 0 as the variable, which keeps its digits near 0.
+    // The variable is u = t + smallest^2 > 0, because u keeps its digits near 0.
     const auto point_at = [&](const Real& u) {
         RealVector point = y;
         for (std::size_t i = 0; i < round_axes_; ++i) {

@@ -1,5 +1,5 @@
 /// \file
-/// Slow oracles for shapes with a formula, to 50 digits, by bisection.
+/// Slow oracles for analytic shapes, with 50 digits, by bisection.
 #pragma once
 
 #include <array>
@@ -19,11 +19,12 @@ using RealVector = std::array<Real, 3>;
 /// Returns u + s v.
 [[nodiscard]] RealVector sum(const RealVector& u, const Real& s, const RealVector& v);
 
-/// Returns the position on the polynomial of the path's stored coefficients.
+/// Returns the position at s on the polynomial with the path's stored coefficients.
 [[nodiscard]] RealVector position(const Path& path, const Real& s);
 
 /// The shape as documented for AnalyticShape. Its axes are the columns of the map, orthonormalised in their order. Its
-/// half axes are the lengths of the columns rounded to doubles; lengths that agree to 2^-49 count as equal.
+/// half axes are the lengths of the columns, rounded to doubles. Lengths that differ by at most 2^-49, relatively,
+/// count as equal.
 class ShapeOracle {
 public:
     ShapeOracle(const AffineMap& world_from_local, bool is_capped);
@@ -33,7 +34,8 @@ public:
         RealVector normal;  ///< outward, in world coordinates
     };
     [[nodiscard]] Nearest nearest(const RealVector& p) const;
-    /// Returns a signed value: negative inside, positive outside, 0 on the surface. It is smooth except at the edge.
+    /// Returns a signed value: negative inside, positive outside, 0 on the surface. The value is a smooth function of p
+    /// except at the edge of a cap.
     [[nodiscard]] Real value(const RealVector& p) const;
     /// Returns true if the closed segment has a point on the surface.
     [[nodiscard]] bool intersects(const RealVector& p, const RealVector& q) const;
@@ -51,7 +53,7 @@ private:
     std::array<RealVector, 3> axes_;
     RealVector center_;
     std::array<double, 3> half_{};
-    std::size_t round_axes_;  ///< 3 or 2
+    std::size_t round_axes_;  ///< number of axes of the ellipsoid or ellipse: 3, or 2 for a cylinder
 };
 
 }  // namespace ricochet::testing

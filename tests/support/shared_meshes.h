@@ -17,7 +17,7 @@ namespace ricochet::testing {
 /// Returns the path of a file in this folder, or nothing if it is missing.
 [[nodiscard]] std::optional<std::filesystem::path> shared_mesh(const std::string& name);
 
-/// Returns one sentence for a skipped test.
+/// Returns the sentence with which a test is skipped if the mesh is missing.
 [[nodiscard]] std::string missing_mesh_sentence(const std::string& name);
 
 }  // namespace ricochet::testing

@@ -10,7 +10,7 @@ namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Splits each triangle once into four on the unit sphere.
+/// Splits each triangle into four and moves the new vertices onto the unit sphere.
 TriangleMesh subdivided(const TriangleMesh& coarse) {
     TriangleMesh fine{coarse.vertices, {}};
     std::map<Edge, std::uint32_t> middles;

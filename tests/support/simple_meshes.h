@@ -7,17 +7,17 @@
 
 namespace ricochet::testing {
 
-/// Returns a box of twelve triangles.
+/// Returns an axis-aligned box of twelve triangles.
 [[nodiscard]] TriangleMesh box_mesh(const Vec3& lower, const Vec3& upper);
 
-/// Returns an octahedron whose triangles are split `levels` times into four and projected onto the sphere. It has 8 *
-/// 4^levels triangles.
+/// Returns a sphere of 8 * 4^levels triangles. It is an octahedron whose triangles are split into four `levels` times,
+/// with all vertices on the sphere.
 [[nodiscard]] TriangleMesh sphere_mesh(const Vec3& center, double radius, int levels);
 
 /// Returns the mesh with every face flipped.
 [[nodiscard]] TriangleMesh flipped(TriangleMesh mesh);
 
-/// Returns both meshes in one list, without merging vertices.
+/// Returns one mesh with the triangles of both meshes, without merging vertices.
 [[nodiscard]] TriangleMesh merged(TriangleMesh first, const TriangleMesh& second);
 
 /// Returns the mesh with every vertex moved by `offset` and rounded.

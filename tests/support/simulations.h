@@ -1,5 +1,5 @@
 /// \file
-/// Short functions that start tests of whole simulations.
+/// Short functions that build setups for tests of whole simulations.
 #pragma once
 
 #include <utility>
@@ -9,7 +9,8 @@
 
 namespace ricochet::testing {
 
-/// Returns a setup with one material (default elastic and smooth), optional gravity, and nothing else.
+/// Returns a setup with one material, which is elastic and frictionless by default, and optional gravity. It has no
+/// colliders and no particles.
 [[nodiscard]] inline SimulationSetup setup_of(double time_step, double duration, Material material = {},
                                               const Vec3& gravity = {}) {
     SimulationSetup setup;

@@ -75,7 +75,7 @@ VecOf<T> position_at(const Path& path, const T& s) {
     return p;
 }
 
-/// Distance from the triangle minus the radius, along the path, in any number type.
+/// Distance of the path from the triangle minus the radius, as a function of s, in any number type.
 template <class T>
 class Clearance {
 public:
@@ -99,7 +99,7 @@ private:
 
 using Interval = std::array<double, 2>;
 
-/// Appends the parts of [from, to] that the bound on the speed does not prove clear. Adjacent parts are joined.
+/// Appends the parts of [from, to] in which the bound on the speed does not exclude contact. Adjacent parts are joined.
 void collect_doubtful(const Clearance<long double>& clearance, double speed, double slack, double smallest, double from,
                       double to, std::vector<Interval>& doubtful) {
     const double middle = 0.5 * (from + to);
@@ -113,14 +113,14 @@ void collect_doubtful(const Clearance<long double>& clearance, double speed, dou
         return;
     }
     collect_doubtful(clearance, speed, slack, smallest, from, middle, doubtful);
-    // Once an interval lies completely in overlap, later intervals do not matter.
+    // Later intervals do not matter if the sphere certainly overlaps at the end of the last interval.
     if (!doubtful.empty() && static_cast<double>(clearance(doubtful.back()[1])) < -slack) return;
     collect_doubtful(clearance, speed, slack, smallest, middle, to, doubtful);
 }
 
 /// Returns the time of the only minimum in [low, high], by ternary search.
 Digits time_of_minimum(const Clearance<Digits>& clearance, Digits low, Digits high) {
-    const Digits enough = (high - low) * 1e-14;  // the error of the minimum's value is the square of this
+    const Digits enough = (high - low) * 1e-14;  // the error of the minimum's value is of second order in this length
     while (high - low > enough) {
         const Digits third = (high - low) / 3;
         if (clearance(low + third) <= clearance(high - third)) {
@@ -132,7 +132,7 @@ Digits time_of_minimum(const Clearance<Digits>& clearance, Digits low, Digits hi
     return (low + high) / 2;
 }
 
-/// Returns the root between a clear time and an overlapping time: false position, Illinois variant.
+/// Returns the root between a time without overlap and a time with overlap, by the Illinois variant of false position.
 Digits crossing(const Clearance<Digits>& clearance, Digits clear, Digits hit) {
     Digits at_clear = clearance(clear);
     Digits at_hit = clearance(hit);

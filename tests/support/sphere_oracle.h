@@ -1,6 +1,6 @@
 /// \file
-/// Slow oracles for swept spheres, in 100 decimal digits. They use the exact distance function and no polynomials of
-/// features.
+/// Slow oracles for swept spheres, in 100 decimal digits. They use the exact distance function. The library solves
+/// polynomials for vertices, edges and faces instead.
 #pragma once
 
 #include <array>
@@ -23,22 +23,23 @@ using Triangle = std::array<Vec3, 3>;
 /// Returns the position on the path's polynomial at s.
 [[nodiscard]] DigitsVec3 position(const Path& path, const Digits& s);
 
-/// Returns the nearest point of the closed triangle, which may be degenerate. It is the nearest of the points on the
-/// three segments and, if the projection solves the Gram equations inside, the point in the plane.
+/// Returns the nearest point of the closed triangle, which may be degenerate. The candidates are the nearest points on
+/// the three edges, and the projection onto the plane if it is inside the triangle.
 [[nodiscard]] DigitsVec3 nearest_point(const DigitsVec3& p, const Triangle& triangle);
 [[nodiscard]] Digits distance(const DigitsVec3& p, const Triangle& triangle);
 
 /// Result of the search along the distance function.
 struct OracleContact {
-    std::optional<Digits> time;  ///< first time at which the distance shrinks to the radius; empty if it stays above
-    /// Distance by which the path misses or enters the radius: the closest approach before `time`, or the depth shortly
-    /// after `time`. If it is tiny, rounding decides about contact.
+    std::optional<Digits> time;  ///< first time at which the distance is the radius; empty if the distance stays larger
+    /// Distance by which the path misses the sphere's contact or penetrates after it. This is the closest approach
+    /// before `time`, or the depth shortly after `time`. If the margin is tiny, rounding decides whether there is
+    /// contact.
     Digits margin = 0;
 };
 
-/// Returns the first contact of a sphere that starts clear of the triangle. Bisects intervals of time until the bound
-/// on the speed proves them clear, because the distance changes at most at the speed of the path. In the remaining
-/// intervals it finds the minimum, and the root before it.
+/// Returns the first contact of a sphere that does not touch the triangle at the start. The distance changes at most at
+/// the speed of the path. Intervals of time are therefore bisected until this bound excludes contact. In the remaining
+/// intervals, the function finds the minimum of the distance, and the root before the minimum.
 [[nodiscard]] OracleContact first_contact(const Path& path, double radius, const Triangle& triangle);
 
 }  // namespace ricochet::testing

@@ -1,5 +1,5 @@
 /// \file
-/// Means with their standard errors, for comparisons with expected values of random quantities.
+/// Means and their standard errors, for tests that compare random quantities with expected values.
 #pragma once
 
 #include <cmath>
@@ -30,7 +30,7 @@ private:
     double squares_ = 0.0;
 };
 
-/// Independent pairs (numerator, denominator) whose means have the expected ratio.
+/// Independent pairs (numerator, denominator), for a test that the ratio of the means has an expected value.
 class RatioSample {
 public:
     explicit RatioSample(double expected) : expected_(expected) {}
@@ -40,7 +40,7 @@ public:
         numerator_.add(numerator);
     }
     [[nodiscard]] double ratio() const { return numerator_.mean() / denominator_.mean(); }
-    /// Returns the standard error of the ratio, if the expected value is the true one.
+    /// Returns the standard error of the ratio under the assumption that the expected value is true.
     [[nodiscard]] double error() const { return difference_.error() / denominator_.mean(); }
 
 private:

@@ -1,5 +1,5 @@
 /// \file
-/// A folder for one test, deleted after it.
+/// A folder for one test, which is deleted after the test.
 #pragma once
 
 #include <unistd.h>
@@ -30,7 +30,7 @@ public:
 
     [[nodiscard]] std::filesystem::path path(std::string_view name) const { return path_ / name; }
 
-    /// Writes a file of the given bytes and returns its path.
+    /// Writes the bytes to a file and returns its path.
     [[nodiscard]] std::filesystem::path write(std::string_view name, std::string_view bytes) const {
         std::ofstream out(path(name), std::ios::binary);
         out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));

@@ -1,5 +1,5 @@
 /// \file
-/// Ranks that are threads of the test. They replace MPI processes without MPI.
+/// Ranks that are threads of the test. They replace MPI processes, so that tests need no MPI.
 #pragma once
 
 #include <algorithm>
@@ -79,8 +79,8 @@ private:
     std::size_t rank_;
 };
 
-/// Runs `work` on `count` ranks at once, and rethrows the exception of the first rank that failed. Either all ranks
-/// must throw, or none.
+/// Runs `work` on `count` ranks at the same time. Rethrows the exception of the lowest rank that threw. Either all
+/// ranks must throw, or none.
 inline void on_ranks(std::size_t count, const std::function<void(const std::shared_ptr<Ranks>&)>& work) {
     const auto board = std::make_shared<ThreadRanksBoard>(count);
     std::vector<std::exception_ptr> errors(count);

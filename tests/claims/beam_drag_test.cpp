@@ -1,5 +1,5 @@
-// Force and torque of a parallel cold beam on bodies. Drag coefficients on the frontal area, F / (1/2 rho v^2 A), are
-// compared with closed forms.
+// Force and torque of a parallel cold beam on bodies. The drag coefficients F / (1/2 rho v^2 A), with the frontal area
+// A, are compared with closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,8 +35,8 @@ Material lambert() {
     return material;
 }
 
-/// Beam along +x through a rectangle of the y-z plane. Its molecules have unit mass and speed and fly one after the
-/// other.
+/// Beam along +x through a rectangle of the y-z plane. Its molecules have unit mass and unit speed, and fly one after
+/// the other.
 struct Beam {
     double y_from, y_to, z_from, z_to;
     [[nodiscard]] double area() const { return (y_to - y_from) * (z_to - z_from); }
@@ -79,8 +79,8 @@ void expect_drag(const std::vector<ColliderDescription>& body, const Material& m
     EXPECT_NEAR(answer.lift.mean(), 0.0, 4.0 * answer.lift.error() + 1e-12);
 }
 
-// Absorption transfers the momentum of arrival. The hit list contains it, and the velocity after the impact is zero in
-// the records.
+// An absorbing plate receives the whole momentum of each molecule. The contact record of an absorbed molecule has zero
+// velocity after the impact.
 TEST(FlatPlateInABeam, HasDragFourIfSpecularTwoIfAbsorbingAndTenThirdsIfDiffuse) {
     const std::vector<ColliderDescription> plate{{"plate", CuboidShape{{0.02, 1, 1}, {}}, 0}};
     const Beam beam{-0.5, 0.5, -0.5, 0.5};
@@ -117,8 +117,8 @@ TriangleMesh cone(int sides) {
 
 TEST(ConeInABeam, HasDragFourTimesTheSquaredSineOfItsHalfAngleIfSpecular) {
     constexpr int kSides = 512;
-    // The tangent of the facets' inclination is smaller by the factor cos(pi / n). The polygon's area is smaller by 2
-    // (pi / n)^2 / 3.
+    // The facets are less steep than the cone. The tangent of their inclination is smaller by the factor cos(pi / n).
+    // The area of the polygon is smaller than the circle's by the relative amount 2 (pi / n)^2 / 3.
     const double faceting = 4.0 * (kPi / kSides) * (kPi / kSides);
     expect_drag({testing::mesh_collider(cone(kSides))}, specular(), {-1, 1, -1, 1}, 1.0, kPi, faceting);
 }
@@ -131,7 +131,7 @@ TEST(HalfLitPlate, HasATorqueOfTheForceTimesItsLeverArm) {
     EXPECT_NEAR(answer.torque.mean(), -4.0 * 0.5 * 0.25, 4.0 * answer.torque.error());
 }
 
-// The simulation accumulates the same sums per triangle.
+// The totals per triangle that a simulation records add up to the same force.
 TEST(ImpulsePerTriangle, AddsUpToTheForceOnThePlate) {
     SimulationSetup setup;
     setup.options.duration = 10.0;

@@ -61,7 +61,8 @@ TEST(WhatRests, SleepsBesideMovingCollidersUntilOneArrivesWithTheSameBits) {
             most = std::max(most, asleep.statistics().asleep);
             ASSERT_EQ(asleep.state_hash(), awake.state_hash()) << "s: " << asleep.time();
         }
-        // A particle that wakes between steps computed together has no deferred steps to catch up.
+        // advance(50) computes steps together. A particle that wakes between two of these steps has no deferred steps
+        // to integrate.
         Simulation together(swept_floor(true, seed));
         while (!together.finished()) together.advance(50);
         EXPECT_EQ(together.state_hash(), awake.state_hash());
@@ -69,13 +70,13 @@ TEST(WhatRests, SleepsBesideMovingCollidersUntilOneArrivesWithTheSameBits) {
         EXPECT_EQ(awake.statistics().asleep, 0U);
         EXPECT_EQ(asleep.statistics().contacts, awake.statistics().contacts);
         EXPECT_EQ(asleep.statistics().squeezed, 0U);
-        // The totals include the weight of sleeping particles.
+        // The impulses on the floor include the weight of sleeping particles.
         EXPECT_LT(length(given_to_floor(asleep) - given_to_floor(awake)), 1e-11 * length(given_to_floor(awake)));
     }
 }
 
-// With a verifier, particles beside moving colliders do not sleep. Particles that slept in the saved state have loaded
-// the floor until then.
+// With a verifier, particles beside moving colliders do not sleep. A restored state without sleep must contain the load
+// that sleeping particles had on the floor before the state was saved.
 TEST(WhatRests, LoadsTheFloorAfterItsSleepIsResumedUnderVerification) {
     SimulationSetup verified = swept_floor(true, 1);
     verified.options.verify = true;
@@ -98,9 +99,10 @@ TEST(WhatRests, LoadsTheFloorAfterItsSleepIsResumedUnderVerification) {
     EXPECT_LT(length(given_to_floor(second) - given_to_floor(whole)), 1e-11 * length(given_to_floor(whole)));
 }
 
-// A slanted face at 1 m/s hits the upper half of a sphere on a floor. Both contacts are resolved together: u . n = -e
-// u_before . n at the face and at most that at the floor. The sphere leaves along the floor at 1 + e. Sequential
-// impacts would bounce it between both surfaces at ever smaller speeds in almost no time, until it counted as pinched.
+// A slanted face at 1 m/s hits the upper half of a sphere on a floor. Both contacts are resolved together, with the
+// relative velocity u. At the face, u . n = -e u_before . n. At the floor, u . n has at most this value. The sphere
+// leaves along the floor at 1 + e m/s. Sequential impacts would make it bounce between both surfaces at ever smaller
+// speeds until it counted as pinched.
 TEST(WhatRests, AndIsHitFromAboveReboundsTogetherWithItsSupport) {
     for (const double friction : {0.0, 0.2}) {
         SCOPED_TRACE(friction);

@@ -28,7 +28,7 @@ double distance(const Vec3& x, const Vec3& p, const Vec3& q) {
     return length(x - (p + s * d));
 }
 
-/// Returns a vertex, or a point of an edge, of a triangle.
+/// Returns a vertex of a triangle, or a point on an edge.
 Vec3 rim_point(const CollisionWorld::Corners& t, RandomSequence& random) {
     const Vec3* const corners[3] = {&t.a, &t.b, &t.c};
     const auto k = static_cast<std::size_t>(3.0 * random.uniform());
@@ -40,7 +40,7 @@ std::uint32_t random_triangle(const CollisionWorld& world, RandomSequence& rando
     return static_cast<std::uint32_t>(random.uniform() * static_cast<double>(world.triangles().size()));
 }
 
-/// Particle that is aimed repeatedly.
+/// A particle that repeatedly flies towards vertices and edges.
 struct Aimed {
     const CollisionWorld& world;
     ContactScratch& scratch;
@@ -90,8 +90,8 @@ bool oracle_meets(const TriangleMesh& mesh, const Vec3& p, const Vec3& q) {
         const Vec3& a = mesh.vertices[t[0]];
         const Vec3& b = mesh.vertices[t[1]];
         const Vec3& c = mesh.vertices[t[2]];
-        // Every point of a triangle is within the length of its longer edge from a corner. The factor adds a margin for
-        // rounding.
+        // The distance of any point of the triangle from the corner a is at most the longer of the two edges at a. The
+        // factor adds a margin for rounding.
         const double reach = 1.001 * std::max(length(b - a), length(c - a)) + rounding;
         return distance(a, p, q) <= reach && exact_segment_intersects_triangle(p, q, a, b, c);
     });
@@ -100,7 +100,7 @@ bool oracle_meets(const TriangleMesh& mesh, const Vec3& p, const Vec3& q) {
 Billiard::Billiard(const NamedMesh& mesh, const Placement& placement) : world_(as_collider(mesh, placement)) {
     mesh_ = *world_.mesh_of(0);
     if (count_open_edges(mesh_) == 0) oracle_ = std::make_unique<ParityOracle>(mesh_);
-    // 4 V / S in a closed body. For an open mesh, the volume of its bounding box is used.
+    // The mean free path is 4 V / S in a closed body. For an open mesh, V is the volume of the bounding box.
     const Vec3 size = bounds(mesh_).size();
     const double volume = oracle_ ? std::fabs(signed_volume(mesh_)) : size.x * size.y * size.z;
     mean_free_path_ = 4.0 * volume / surface_area(mesh_);
@@ -154,7 +154,8 @@ BilliardTally Billiard::fly(int particles, int steps, double impacts, double gra
     return sum_of(parts);
 }
 
-/// Checks every segment of the chain that was followed. A chain that does not join its ends counts as a crossing.
+/// Checks every segment of the chain that the particle has followed. If the chain does not start at `from` and end at
+/// `to`, that counts as a crossing.
 void Billiard::check_legs(const std::vector<PathPoint>& chain, const Vec3& from, const Vec3& to,
                           BilliardTally& tally) const {
     tally.crossing_segments += chain.front().position == from && chain.back().position == to ? 0 : 1;

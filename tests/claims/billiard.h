@@ -1,4 +1,4 @@
-/// \file Particles that bounce without loss in a mesh, with independent checks of their positions.
+/// \file Particles that bounce elastically in a mesh, with independent checks of their positions.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,14 @@ namespace ricochet::testing {
 /// Results of a run.
 struct BilliardTally {
     std::uint64_t contacts = 0;
-    std::uint64_t stayed = 0;             ///< contacts after which the particle is at the start of its path
-    std::uint64_t not_inside = 0;         ///< particles outside, or on the surface, at any check
-    std::uint64_t checked_segments = 0;   ///< segments tested again by the exact reference
+    std::uint64_t stayed = 0;             ///< contacts at which the particle did not move
+    std::uint64_t not_inside = 0;         ///< particles that were outside or on the surface at some check
+    std::uint64_t checked_segments = 0;   ///< segments that the exact reference tested
     std::uint64_t crossing_segments = 0;  ///< checked segments that intersect a triangle
     std::uint64_t budget_exhausted = 0;   ///< steps that exhausted their bounce budget
 };
 
-/// Mesh placed in the world, with its reference.
+/// A mesh placed in the world, with an exact reference.
 class Billiard {
 public:
     Billiard(const NamedMesh& mesh, const Placement& placement);
@@ -32,14 +32,14 @@ public:
     /// gives the same points.
     [[nodiscard]] std::vector<Vec3> start_points(int count, std::uint64_t seed) const;
 
-    /// Flies in random directions, with about `impacts` impacts per step. `gravity` is in mean free paths per step
-    /// squared (0: straight flight).
+    /// Lets particles fly in random directions, with about `impacts` impacts per step. `gravity` is an acceleration in
+    /// mean free paths per step squared; 0 gives straight flights.
     [[nodiscard]] BilliardTally fly(int particles, int steps, double impacts, double gravity, IntegratorKind kind,
                                     std::uint64_t seed) const;
 
-    /// Aims every flight at a vertex or a point of an edge. After an impact, the target is on the triangle just hit in
-    /// two of three cases, or else on any triangle. Some flights end exactly there. The reference tests one segment in
-    /// `check_every`.
+    /// Aims every flight at a vertex or at a point of an edge. After an impact, two of three targets are on the
+    /// triangle just hit. Other targets are on a random triangle. Some flights end exactly at the target. The reference
+    /// tests the segments of one flight in `check_every`.
     [[nodiscard]] BilliardTally aim(int particles, int impacts, int check_every, std::uint64_t seed) const;
 
     [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
@@ -56,7 +56,7 @@ private:
 };
 
 /// Returns true if the closed segment intersects a triangle of the mesh. The test is exact and independent of the
-/// library's predicates and hierarchy. Its work is linear in the number of triangles.
+/// library's predicates and BVH. Its time is linear in the number of triangles.
 [[nodiscard]] bool oracle_meets(const TriangleMesh& mesh, const Vec3& p, const Vec3& q);
 
 }  // namespace ricochet::testing

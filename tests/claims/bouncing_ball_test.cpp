@@ -1,5 +1,5 @@
-// A ball dropped on a floor matches the closed form at every impact and every apex, in the time to rest and in the path
-// length. The time step and the triangulation of the floor must not matter.
+// A ball dropped on a floor matches the closed form: at every impact and every apex, in the time to rest, and in the
+// path length. The result must not depend on the time step and the triangulation of the floor.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -63,7 +63,7 @@ class DroppedBall : public ::testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Restitutions, DroppedBall, ::testing::Values(0.5, 0.8, 0.9),
                          [](const auto& e) { return fmt::format("e{}", std::lround(10.0 * e.param)); });
 
-// Impact n occurs at t0 (1 + 2 (e + ... + e^(n - 1))), followed by an apex of h e^(2n).
+// Impact n occurs at t0 (1 + 2 (e + ... + e^(n - 1))). The apex after it has the height h e^(2n).
 TEST_P(DroppedBall, MatchesTheClosedFormOfImpactsAndApexesAtAnyTimeStep) {
     const double e = GetParam();
     for (const double time_step : {1e-4, 1e-3, 1.0 / 60.0, 0.1, 1.0}) {
@@ -86,7 +86,8 @@ TEST_P(DroppedBall, ComesToRestAtTheTimeAndPathLengthOfTheSeries) {
     const double total = time_to_rest(e);
     for (const double time_step : {1e-4, 1.0 / 60.0, 1.0}) {
         SCOPED_TRACE(time_step);
-        // In contact without tangential motion, the last 2 v / (g (1 - e)) seconds at v = 1 mm/s count as rest already.
+        // Without tangential motion, rebounds below v = 1 mm/s already count as rest. They last for the last 2 v / (g
+        // (1 - e)) seconds.
         EXPECT_FALSE(drop(plane(), e, time_step, total - 2.1e-3 / (kG * (1.0 - e))).rests);
         const Drop dropped = drop(plane(), e, time_step, total + 2e-4);
         EXPECT_TRUE(dropped.rests);

@@ -1,5 +1,5 @@
-// Particles on springs that bounce: the order stays two, momentum is conserved to rounding, and energy drifts no more
-// than without walls.
+// Bouncing particles on springs. The methods keep order two, momentum is conserved to rounding, and energy drifts no
+// more than without walls.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -66,7 +66,7 @@ Simulation finished(SimulationSetup setup, const Integrator& integrator, double 
     return simulation;
 }
 
-/// Changes of the energy in a run, relative to the first energy.
+/// Changes of the energy during a run, relative to the initial energy.
 struct EnergyCourse {
     double at_end = 0.0;
     double largest = 0.0;  ///< in either direction
@@ -156,7 +156,7 @@ TEST(BouncingSprings, KeepOrderThreeWithRk4WithoutDampers) {
     EXPECT_GT(measured_order(0.0, true, IntegratorKind::rk4), 2.7);
 }
 
-// A damper transmits a bounce immediately to both ends.
+// A damper changes its force immediately when one end bounces. The change acts on both ends.
 TEST(BouncingSprings, KeepOrderTwoWithDampers) {
     for (const IntegratorKind kind :
          {IntegratorKind::velocity_verlet, IntegratorKind::midpoint, IntegratorKind::rk4, IntegratorKind::ballistic}) {
@@ -191,8 +191,8 @@ Vec3 momentum(const Particles& particles) {
     return sum;
 }
 
-// A floor without friction takes no momentum along it. The momentum that one end of a spring gains there is lost by the
-// other end.
+// A frictionless floor exerts no force along its surface. The two ends of a spring therefore exchange momentum along
+// the floor without loss.
 TEST(BouncingSprings, KeepMomentumAlongAFloorToRounding) {
     for (const IntegratorKind kind :
          {IntegratorKind::velocity_verlet, IntegratorKind::midpoint, IntegratorKind::rk4,
@@ -235,7 +235,7 @@ SimulationSetup chains(std::uint64_t seed, bool in_box) {
     return setup;
 }
 
-/// Returns the state after a second of bouncing, with or without the box. It is a start without any symmetry.
+/// Returns the state after one second of bouncing, with or without the box. This start state has no symmetry.
 SimulationSetup hot_chains(std::uint64_t seed, bool in_box) {
     SimulationSetup setup = chains(seed, in_box);
     const Simulation warm = finished(chains(seed, true), IntegratorKind::rk4, 1e-3, 1.0);
@@ -246,7 +246,8 @@ SimulationSetup hot_chains(std::uint64_t seed, bool in_box) {
     return setup;
 }
 
-// 4500 bounces, at 45 % of the step at which the method diverges. The energy of a single run varies randomly.
+// The run has 4500 bounces, with a step that is 45 % of the step at which the method diverges. The energy of a single
+// run varies randomly.
 TEST(BouncingSpringsEnergy, IsConservedByVelocityVerletInABox) {
     const int runs = case_factor(12);
     double sum = 0.0;
@@ -263,7 +264,7 @@ TEST(BouncingSpringsEnergy, IsConservedByVelocityVerletInABox) {
     EXPECT_LT(std::fabs(sum / runs), 0.01 / std::sqrt(runs));
 }
 
-// The gain or loss of Runge-Kutta methods on springs is the same with bounces and without.
+// Runge-Kutta methods on springs gain or lose energy at the same rate with and without bounces.
 TEST(BouncingSpringsEnergy, DriftsWithRungeKuttaMethodsAsWithoutBounces) {
     struct Case {
         IntegratorKind kind;
@@ -278,8 +279,9 @@ TEST(BouncingSpringsEnergy, DriftsWithRungeKuttaMethodsAsWithoutBounces) {
     }
 }
 
-// 400 nodes, 28 % of the step at which velocity Verlet diverges. The energy that it conserves differs slightly from the
-// measured energy. The difference grows while the throw turns into oscillation.
+// The net has 400 nodes. The step is 28 % of the step at which velocity Verlet diverges. The method conserves an energy
+// that differs slightly from the measured energy. The difference grows while the motion of the thrown net turns into
+// oscillation.
 TEST(BouncingSpringsEnergy, IsConservedByVelocityVerletAndRk4ForANetInAMesh) {
     const auto net_in_mesh = [] {
         SimulationSetup setup = net(20, 0.0, {1.5, 0.7, 2.0});
@@ -315,7 +317,7 @@ TEST(BouncingSprings, GiveTheSameBitsForAnyThreadCount) {
     }
 }
 
-// Every segment of changed paths is certified like any other.
+// Deviations from the plan change paths. Every segment of a changed path must be certified like any other segment.
 TEST(BouncingSprings, NeverLeak) {
     for (const IntegratorKind kind : {IntegratorKind::velocity_verlet, IntegratorKind::rk4}) {
         SimulationSetup setup = net(10, 0.0, {1.0, 0.5, -2.0});

@@ -1,4 +1,4 @@
-// Points that slide and spheres that roll in a ball-shaped bowl swing like pendulums.
+// Sliding points and rolling spheres swing like pendulums in a spherical bowl.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,8 +42,8 @@ double complete_elliptic_integral(double k) {
     return 0.5 * kPiNumber / a;
 }
 
-/// Returns the time at which x passes through zero between two states `h` apart, on the cubic through both. Its error
-/// h^4 x''''/ 384 is below 1e-9 m for the swings and steps here.
+/// Returns the time at which x passes through zero between two states that are `h` apart in time. x is interpolated by
+/// the cubic through both states. The interpolation error h^4 x''''/ 384 is below 1e-9 m for the swings and steps here.
 double zero_between(const Particle& from, const Particle& to, double h) {
     double low = 0.0;
     double high = 1.0;
@@ -59,7 +59,7 @@ double zero_between(const Particle& from, const Particle& to, double h) {
     return low * h;
 }
 
-/// Returns the mean period of five swings, between passages through the lowest point.
+/// Returns the mean period of five swings, measured between passages through the lowest point.
 double period_of(const ContactScene& scene) {
     std::vector<double> passages;
     Particle last = scene.particle;
@@ -82,13 +82,14 @@ TEST(APointInABowl, SwingsWithThePeriodOfAPendulumToSecondOrder) {
         };
         const double coarse = error(0.01);
         EXPECT_LT(coarse, 1e-4) << angle;
-        // At half the step the error is a quarter, with one hundredth of that for the next order, or at the accuracy of
-        // the passages.
+        // At half the step, the error falls to a quarter. The factor 1.01 allows for the next order. The limit 1e-9 is
+        // the accuracy of the passage times.
         EXPECT_LT(error(0.005), std::max(0.25 * 1.01 * coarse, 1e-9)) << angle;
     }
 }
 
-// Small swings of the pendulum: an amplitude of a tenth of a radian would add 6e-4, this one adds 6e-6.
+// The pendulum swings with a small amplitude. The amplitude lengthens the period by the factor 1 + 6e-6 here. An
+// amplitude of a tenth of a radian would lengthen it by 1 + 6e-4.
 TEST(ASphereInABowl, RollsLikeAPendulumOfSevenFifthsOfItsLength) {
     for (const double radius : {0.01, 0.1, 0.4}) {
         const double expected = 2.0 * kPiNumber * std::sqrt(7.0 * (1.0 - radius) / (5.0 * kG));
@@ -97,7 +98,8 @@ TEST(ASphereInABowl, RollsLikeAPendulumOfSevenFifthsOfItsLength) {
     }
 }
 
-/// Returns the largest change of energy over a run, relative to the energy that the swing converts.
+/// Returns the largest change of total energy over a run, relative to the energy that the swing converts between
+/// potential and kinetic energy.
 double worst_energy(const ContactScene& scene, double inertia) {
     const double first = kG * scene.particle.position.z;
     const double swing = first + kG * (1.0 - scene.particle.radius);
@@ -132,7 +134,8 @@ double rolled_angle(double angle, double radius, double time) {
     return angle;
 }
 
-// A straight path leaves the ball behind a sphere that is small compared with it. That must not count as a reversal.
+// The bowl curves away from the straight path of a step. For a small sphere, the end of this path is outside the bowl.
+// That must not count as a reversal of the motion.
 TEST(ASphereInABowl, RollsOnForAnyRadius) {
     const double start = kPiNumber / 6.0;
     for (const double radius : {0.1, 1e-3, 1e-5, 1e-6, 1e-9}) {
@@ -149,7 +152,8 @@ TEST(ASphereInABowl, RollsOnForAnyRadius) {
     }
 }
 
-// Required bounds: the rounding of about 1e-16 of g R per step is 2e-14 of the swing's 0.005 g R.
+// The bounds are required. In comparison, a rounding error of about 1e-16 g R per step is 2e-14 of the energy of a
+// swing, which is 0.005 g R.
 TEST(APointInABowl, ConservesTheEnergyOfAHundredSwingsInTheWholeProgram) {
     for (const auto& [angle, bound] : {std::pair{1.0, 1e-10}, std::pair{0.1, 5e-10}}) {
         EXPECT_LT(worst_energy(in_bowl(angle, 0.0, 0.0, 0.02, 220.0), 0.0), bound) << angle;
@@ -162,7 +166,7 @@ TEST(ASphereInABowl, ConservesTheEnergyOfAHundredSwingsWhileItRolls) {
     }
 }
 
-// v' = -mu v^2 / R without gravity, because only the curvature of the surface causes a normal force.
+// The speed obeys v' = -mu v^2 / R without gravity, because only the curvature of the surface causes a normal force.
 TEST(APointInABowl, IsSlowedByFrictionOfTheCentripetalForceWithEveryIntegrator) {
     for (const IntegratorKind kind :
          {IntegratorKind::ballistic, IntegratorKind::forward_euler, IntegratorKind::symplectic_euler,
@@ -176,7 +180,7 @@ TEST(APointInABowl, IsSlowedByFrictionOfTheCentripetalForceWithEveryIntegrator) 
     }
 }
 
-/// Returns angle and rate after a second of a point that slides up a bowl, stops at 0.424 s and slides back.
+/// Returns the angle and its rate after one second. The point slides up a bowl, stops at 0.424 s and slides back.
 std::array<double, 2> slid_up_and_back(double friction, double speed) {
     std::array<double, 2> state{0.0, speed};
     const double step = 1e-5;

@@ -1,5 +1,5 @@
-// Compares the program with all its culling to the same rules applied to every triangle, for random meshes, particles
-// and steps.
+// Compares the program, which culls triangles, with a reference that applies the same rules to every triangle. The
+// meshes, particles and steps are random.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -20,7 +20,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// Random case that depends on its number only.
+/// A random case that depends only on its number.
 class RandomCase {
 public:
     explicit RandomCase(std::uint64_t seed) : random_(seed, 21, 0) {}
@@ -115,7 +115,7 @@ TEST(Culling, ChangesNoImpactAndNoBitOfTheStateInRandomCases) {
         }
         impacts += simulation.statistics().contacts;
     }
-    EXPECT_GT(impacts, static_cast<std::uint64_t>(test::scaled(100)) * 10);  // not an empty test
+    EXPECT_GT(impacts, static_cast<std::uint64_t>(test::scaled(100)) * 10);  // the test must contain impacts
 }
 
 }  // namespace RICOCHET_FILE

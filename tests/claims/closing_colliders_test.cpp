@@ -1,5 +1,5 @@
-// Colliders that close exactly on a surface, or on each other, and open again let no particle pass. Particles without
-// space stall and are free again afterwards.
+// Colliders close exactly on a surface, or on each other, and open again. No particle passes through them. Particles
+// without space stall, and move freely after the colliders have opened.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,12 +33,13 @@ struct Placed {
     [[nodiscard]] Vec3 point(const Vec3& p) const { return scale * turned(p) + shift; }
 };
 
-/// Press along x between 0 and 1. The piston from -0.4 reaches the wall at 1 after `closed` seconds.
+/// A press that acts along x between 0 and 1. The piston starts at -0.4 and reaches the wall at 1 after `closed`
+/// seconds.
 struct Press {
     Placed placed{};
     Against against = Against::plane;
     bool is_mesh = false;
-    double over = 0.0;  ///< distance by which it overshoots
+    double over = 0.0;  ///< distance by which the piston moves beyond the wall
     double restitution = 0.0;
     double friction = 0.0;
     double time_step = 1.0 / 60.0;
@@ -132,7 +133,8 @@ TEST(APistonThatClosesExactlyOnAWall, LetsNoParticleThroughAndReleasesAllAgain) 
     }
 }
 
-// The press is rotated, shifted and scaled, stops slightly short of the wall or beyond it, and uses any time step.
+// The press is rotated, shifted and scaled. The piston stops slightly before the wall or beyond it. The time step is
+// random.
 TEST(APistonThatCloses, LetsNoParticleThroughInAnyPlacement) {
     for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(test::scaled(120)); ++seed) {
         SCOPED_TRACE(seed);

@@ -1,5 +1,5 @@
-// Persistent contact on curved surfaces with steps that are long compared with a swing. Energy is conserved, and so is
-// the speed along a cylinder, on which no force acts.
+// Persistent contact on curved surfaces with time steps that are long compared with a swing. Energy is conserved. The
+// speed along a cylinder is conserved too, because no force acts in this direction.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,14 +15,14 @@ namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
 
-/// Returns the energy of a solid sphere or a point per unit mass, in m^2/s^2.
+/// Returns the energy per unit mass of a solid sphere or a point, in m^2/s^2.
 double energy_of(const Particle& particle, const Vec3& gravity) {
     const double turning = 0.4 * particle.radius * particle.radius * length_squared(particle.spin);
     return 0.5 * (length_squared(particle.velocity) + turning) - dot(gravity, particle.position);
 }
 
-/// Returns a particle of this radius on a smooth horizontal cylinder of radius 1, at an angle from its lowest line. It
-/// has speeds along the cylinder and across it. The whole scene is rotated by `turn`.
+/// Returns a particle of this radius in a frictionless horizontal cylinder of radius 1, at an angle from its lowest
+/// line. `along` and `across` are the speeds along and across the cylinder. The whole scene is rotated by `turn`.
 ContactScene in_cylinder(double radius, double angle, double along, double across, const Placement& turn,
                          double height = 50.0) {
     const AffineMap map = world_from_local(turn);
@@ -45,8 +45,8 @@ Placement random_turn(RandomSequence& random) {
     return turn;
 }
 
-// The initial speed is along the axis, in which direction the surface has no curvature. Arcs must not be as long as the
-// step.
+// The initial velocity is along the axis, a direction in which the surface has no curvature. Contact intervals must
+// still be shorter than the step.
 TEST(SwingWithAxialSpeed, ConservesItsEnergyAndItsAxialSpeedWithAnyStep) {
     for (int k = 0; k < test::scaled(100) * test::case_factor(20); ++k) {
         RandomSequence random(92, 0, static_cast<std::uint64_t>(k));
@@ -66,7 +66,8 @@ TEST(SwingWithAxialSpeed, ConservesItsEnergyAndItsAxialSpeedWithAnyStep) {
     }
 }
 
-// A swing of 1e-3 rad is harmonic. Near its lowest point its speed alone would not limit the arcs enough.
+// A swing of 1e-3 rad is harmonic. Near the lowest point, a limit by the speed alone would allow too long contact
+// intervals.
 TEST(SmallSwing, HasItsPeriodWithAnyStep) {
     for (const double step : {0.01, 0.1, 0.5, 1.0}) {
         ContactScene scene = in_cylinder(0.0, 1e-3, 0.3, 0.0, {});
@@ -97,7 +98,7 @@ TEST(SwingInABowl, ConservesItsEnergyWithAnyStep) {
     }
 }
 
-// The curvature must not be sampled over a step that is a fraction of the pipe's length.
+// The curvature must not be estimated over a distance proportional to the pipe's length.
 TEST(LongPipe, CurvesLikeAShortOne) {
     for (const double radius : {0.0, 0.01, 0.3}) {
         for (const double height : {2e3, 2e4}) {
@@ -113,7 +114,8 @@ TEST(LongPipe, CurvesLikeAShortOne) {
     }
 }
 
-// A particle thrown upwards leaves the wall when the normal force ends. The departure must be found in one flight.
+// A particle thrown upwards leaves the wall when the normal force ends. The time of separation must be found, and the
+// particle must then fly freely without a second contact.
 TEST(LongPipe, ReleasesAParticleFromItsRoofOnce) {
     ContactScene scene = in_cylinder(0.0, 0.0, 0.3, std::sqrt(3.5 * kG), {}, 2e4);
     scene.time_step = 0.5;

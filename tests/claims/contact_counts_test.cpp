@@ -1,4 +1,4 @@
-// The numbers of impacts do not change as the time step is halved, for particles that are carried, slide or roll.
+// The numbers of impacts of carried, sliding and rolling particles do not change if the time step is halved.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -20,7 +20,7 @@ namespace RICOCHET_FILE {
 constexpr double kG = kStandardGravity;
 constexpr double kStep = 0.01;
 
-/// Returns a plank of 2 x 1 x 0.2 m and 3 kg that turns about y, or moves along z on a spring.
+/// Returns a plank of 2 x 1 x 0.2 m with 3 kg. Depending on the joint, it turns about y, or moves along z on a spring.
 SimulationSetup plank_setup(JointKind joint, double spring, double damping, const Particle& particle) {
     SimulationSetup setup = ricochet::testing::setup_of(kStep, 1.0, Material{"wood", 0.5, 0.4}, {0, 0, -kG});
     setup.options.record_contacts = true;
@@ -54,13 +54,13 @@ Particle ball_at(const Vec3& position) {
 struct Counts {
     std::uint64_t contacts = 0;
     std::uint64_t rows = 0;
-    std::uint64_t hits = 0;  ///< of all surfaces
+    std::uint64_t hits = 0;  ///< impacts on all surfaces
     double slowest = 1e300;  ///< smallest approach speed of a record, in m/s
-    Vec3 impulse;            ///< given to all surfaces, in N s
-    Vec3 momentum;           ///< of the particle at the end, in kg m/s
+    Vec3 impulse;            ///< impulse on all surfaces, in N s
+    Vec3 momentum;           ///< momentum of the particle at the end, in kg m/s
 };
 
-/// make: returns a new setup for each run.
+/// Runs a setup and counts its impacts. make() returns a new setup for each run.
 template <class Make>
 Counts counts_of(const Make& make, double time_step) {
     SimulationSetup setup = make();
@@ -92,7 +92,7 @@ TEST(TheCountsOfAParticleThatIsCarried, AreZeroAtAnyTimeStepIfItIsCarriedFromThe
         EXPECT_EQ(counts.contacts, 0U) << part;
         EXPECT_EQ(counts.rows, 0U) << part;
         EXPECT_EQ(counts.hits, 0U) << part;
-        // Impulses without impacts are complete: gravity's impulse minus the ball's momentum.
+        // The impulse of lasting contact is complete. It equals gravity's impulse minus the ball's momentum.
         const Vec3 given = Vec3{0, 0, -0.5 * kG} - counts.momentum;
         EXPECT_LT(length(counts.impulse - given), 1e-9) << part;
     }
@@ -113,7 +113,7 @@ TEST(TheCountsOfAParticleThatIsCarried, AreTheNumberOfItsBouncesAtAnyTimeStep) {
     EXPECT_GT(counts[0].contacts, 5U);
 }
 
-// A particle that the plank throws up has left it, so its landing counts.
+// A particle that the plank throws up has separated from it. The landing therefore counts as an impact.
 TEST(TheCountsOfAParticleThatIsCarried, IncludeItsLandingAfterTheBodyHasThrownItUp) {
     const auto setup = [] {
         SimulationSetup thrown = plank_setup(JointKind::slider, 2000.0, 0.0, ball_at({0.1, 0.05, 0.15}));
@@ -129,7 +129,7 @@ TEST(TheCountsOfAParticleThatIsCarried, IncludeItsLandingAfterTheBodyHasThrownIt
     }
 }
 
-/// Returns a particle that slides down a slope without friction into a wall with friction.
+/// Returns a particle that slides down a frictionless slope and hits a wall with friction.
 SimulationSetup slide_setup(double radius) {
     SimulationSetup setup =
         ricochet::testing::setup_of(kStep, 0.6, Material{"floor", 0.5, 0.0}, {0, -0.6 * kG, -0.8 * kG});
@@ -141,12 +141,13 @@ SimulationSetup slide_setup(double radius) {
     return setup;
 }
 
-// After the wall the particle continues along the floor, without a landing at a ten-millionth of its speed.
+// After the impact on the wall, the particle continues along the floor. A landing at a ten-millionth of its speed must
+// not count.
 TEST(TheCountsOfAParticleThatSlides, IncludeOneImpactAtAWallAtAnyTimeStep) {
     for (const double radius : {0.0, 0.05}) {
         for (const double part : {1.0, 0.5, 0.25}) {
             const Counts counts = counts_of([&] { return slide_setup(radius); }, part * kStep);
-            EXPECT_EQ(counts.contacts, 2U) << radius << ' ' << part;  // the landing and the impact at the wall
+            EXPECT_EQ(counts.contacts, 2U) << radius << ' ' << part;  // the first landing and the impact on the wall
             EXPECT_EQ(counts.rows, 2U) << radius << ' ' << part;
         }
     }

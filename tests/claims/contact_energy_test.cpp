@@ -1,5 +1,5 @@
 // Particles that slide, roll or spin on the inside of a curved surface gain no energy. The tests cover every kind of
-// curved surface and any friction and rolling resistance, with and without spin.
+// curved surface, many values of friction and rolling resistance, and particles with and without spin.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,8 +31,8 @@ double largest_gain(const ContactScene& scene) {
     return worst;
 }
 
-/// Rounding of a step: at most about a hundred intervals, each with 4e-16 of the largest term, g times 1.2 m and v^2 /
-/// 2.
+/// Bound on the rounding error of the energy in a step, in J/kg. A step has at most about a hundred contact intervals.
+/// Each has a relative error of 4e-16 of the largest term, which is g times 1.2 m or v^2 / 2.
 constexpr double kRounding = 100 * 4e-16 * 15.0;
 
 struct Room {
@@ -61,7 +61,7 @@ ContactScene tumbling(const Room& room, const Material& material, double radius,
     return scene;
 }
 
-/// Expects no gain for points, small and large spheres, with and without spin, in every room.
+/// Expects no energy gain in any room. Tests points, small spheres and large spheres, with and without spin.
 void expect_no_gain(const Material& material) {
     for (const Room& room : rooms()) {
         for (const auto& [radius, spin] : {std::pair{0.0, Vec3{}}, std::pair{0.02, Vec3{}}, std::pair{0.2, Vec3{}},
@@ -89,8 +89,8 @@ TEST(ContactOnACurve, GainsNoEnergyFromResistanceToRolling) {
     }
 }
 
-// Gravity presses spheres into the rim of a cylinder, where side and cap both support them. They move along it at 1
-// m/s.
+// Gravity presses spheres into the edge between the side and a cap of a cylinder. Both surfaces support the spheres,
+// which move along the edge at 1 m/s.
 TEST(TheRimOfACylinder, SupportsSpheresWithoutEnergyGainOrLossOfTime) {
     for (const auto& [friction, spin] :
          {std::pair{0.0, Vec3{}}, std::pair{0.2, Vec3{}}, std::pair{1.4, Vec3{3, 4, 5}}}) {

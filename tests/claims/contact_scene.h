@@ -1,5 +1,4 @@
-/// \file One sphere or point in persistent contact, run through the library's interface. Shared by the tests of
-/// contact.
+/// \file Simulations of one sphere or point in persistent contact, for several tests of contact.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -21,7 +20,7 @@ inline constexpr double kPiNumber = 3.14159265358979323846;
 [[nodiscard]] constexpr double radians(double degrees) { return degrees * kPiNumber / 180.0; }
 
 /// Initial state of a run with one particle. If there are several materials, collider i has material i. Otherwise all
-/// have the only one.
+/// colliders have the single material.
 struct ContactScene {
     std::vector<ColliderDescription> colliders;
     std::vector<Material> materials;
@@ -72,7 +71,7 @@ void watch(const ContactScene& scene, Visit&& visit) {
     expect_no_time_lost(simulation);
 }
 
-/// Returns the state after one step of the classical Runge-Kutta method. References are integrated with it.
+/// Returns the state after one step of the classical Runge-Kutta method, which integrates the references of the tests.
 template <class State, class Rates>
 [[nodiscard]] State runge_kutta_step(const State& y, double h, const Rates& rates) {
     const auto moved = [&](const State& rate, double by) {

@@ -1,5 +1,5 @@
-// Containment: particles that start inside a closed mesh end inside it, by an exact parity test that shares no code
-// with the library. Their segments intersect no triangle, by rational arithmetic, also in open meshes.
+// Particles that start inside a closed mesh end inside it. An exact parity test that shares no code with the library
+// confirms this. Their segments intersect no triangle, also in open meshes. Rational arithmetic confirms this.
 //
 // A long run tests the same claims with ten thousand particles and a thousand steps.
 #include <gtest/gtest.h>
@@ -26,9 +26,10 @@ struct Amount {
 };
 Amount amount(const std::string& mesh, std::size_t placement) {
     const bool is_real = mesh.find('.') != std::string::npos;
-    // Real meshes get the full number in their original placement and moved by a thousand diagonals.
+    // Real meshes get the full number of particles in two placements: the original one, and moved by a thousand
+    // diagonals.
     if (test::is_long_run()) return {test::scaled(is_real && placement < 2 ? 10000 : 1000), 1000};
-    // The largest mesh takes long to load, so short runs test only some placements of it in full.
+    // The largest mesh takes long to load, so short runs use fewer particles in most of its placements.
     return {test::scaled(mesh == "armadillo.obj" && placement > 1 ? 20 : 60), 50};
 }
 
@@ -48,7 +49,7 @@ protected:
 };
 
 using ClosedMesh = Containment;
-using MessyMesh = Containment;  // open, non-manifold, or self-intersecting
+using MessyMesh = Containment;  // a mesh that is open, non-manifold or self-intersecting
 
 std::string test_name(const ::testing::TestParamInfo<std::string>& info) {
     std::string name = info.param.substr(0, info.param.find('.'));
@@ -113,8 +114,8 @@ TEST_P(MessyMesh, IsNotCrossedByAnySegment) {
     });
 }
 
-// At a vertex at the world's origin, coordinates have no smallest size. Nearby positions can be far smaller than the
-// rounding of distances from the triangles that share the vertex.
+// The vertex is at the world's origin, where coordinates can be arbitrarily small. Coordinates of nearby positions can
+// be far smaller than the rounding error of distances from the triangles at the vertex.
 TEST(VertexAtTheOrigin, ContainsParticlesAimedAtItAThousandTimes) {
     const NamedMesh wedge = *mesh_by_name("wedge");
     ASSERT_NE(std::find(wedge.mesh.vertices.begin(), wedge.mesh.vertices.end(), Vec3{}), wedge.mesh.vertices.end());
@@ -123,7 +124,7 @@ TEST(VertexAtTheOrigin, ContainsParticlesAimedAtItAThousandTimes) {
     EXPECT_GT(tally.contacts, 0U);
 }
 
-// The reference must find a segment through a wall and no intersection of one beside it.
+// The reference must find the intersection of a segment with a wall, and no intersection of a segment beside the wall.
 TEST(SegmentOracle, DistinguishesASegmentThroughAWallFromOneBesideIt) {
     const NamedMesh box = made_meshes().front();
     const Billiard billiard(box, {});

@@ -12,7 +12,7 @@ namespace RICOCHET_FILE {
 
 constexpr double kDuration = 1.6;
 
-/// Returns gravity, quadratic drag and a force that oscillates in time, per unit mass.
+/// Returns the sum of gravity, quadratic drag and a force that oscillates in time, per unit mass.
 Vec3 smooth_force(const ForceInput& input) {
     const double speed = length(input.velocity);
     return input.mass *
@@ -100,7 +100,8 @@ TEST_F(OrderWithBounces, VelocityVerletKeepsOrderTwo) {
     EXPECT_NEAR(measured_order(IntegratorKind::velocity_verlet, geometric(100, 1.15, 24), reference()), 2.0, 0.1);
 }
 
-// Starts with one step for the whole run. The error is the error of some substeps, amplified by bounces.
+// The run is a single step, which the method divides into sub-steps. Its error is the error of some sub-steps,
+// amplified by bounces.
 TEST_F(OrderWithBounces, DormandPrinceKeepsItsTolerance) {
     for (const double tolerance : {1e-5, 1e-7, 1e-9}) {
         for (const int steps : {1, 10, 100}) {

@@ -1,5 +1,5 @@
-// A sphere that rolls between curved surfaces follows its equations, also with rolling and spinning resistance, with
-// every kind of integrator, and without a gain of energy.
+// A sphere that rolls between curved surfaces follows its equations of motion and gains no energy. The tests include
+// rolling and spinning resistance and every kind of integrator.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -13,9 +13,9 @@ namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
 
-/// Sphere of radius 0.2 m at rest between two balls of radius 0.5 m, at an angle from their saddle. The centres of the
-/// balls are 1.2 m apart along x. The sphere's centre moves on a circle of radius `height` about the axis. The contacts
-/// are `arm` from the sphere's own axis of rotation.
+/// Sphere of radius 0.2 m at rest between two balls of radius 0.5 m, at an angle from the highest position between
+/// them. The centres of the balls are on the x axis, 1.2 m apart. The sphere's centre moves on a circle of radius
+/// `height` about the x axis. The distance of the contact points from the sphere's axis of rotation is `arm`.
 struct Saddle {
     double away = 0.6;
     double distance = 0.7;
@@ -36,7 +36,8 @@ ContactScene in_saddle(const Saddle& saddle, double angle, const Material& mater
     return scene;
 }
 
-/// Returns the angle after 0.3 s from rest: h (1 + 2/5 r^2 / arm^2) angle'' = g sin angle, while it rolls.
+/// Returns the angle 0.3 s after the start from rest. The rolling sphere obeys h (1 + 2/5 r^2 / arm^2) angle'' = g sin
+/// angle.
 double angle_of_reference(const Saddle& saddle, double angle) {
     const double ratio = saddle.radius / saddle.arm;
     const double factor = kG / (saddle.height * (1.0 + 0.4 * ratio * ratio));
@@ -71,7 +72,7 @@ TEST(ASphereBetweenTwoBalls, GainsNoEnergyFromResistance) {
                 Material material{"", 0.0, 2.0};
                 material.rolling_friction = rolling;
                 material.spinning_friction = spinning;
-                double last = kG;  // above all later energies
+                double last = kG;  // larger than any energy in the run
                 watch(in_saddle(saddle, angle, material, step), [&](double time, const Particle& p) {
                     if (time > 0.0) {
                         EXPECT_LE(energy_of(p), last + 1e-11)
@@ -85,8 +86,8 @@ TEST(ASphereBetweenTwoBalls, GainsNoEnergyFromResistance) {
     }
 }
 
-// The normal turns as the sphere rolls. Resistance to spinning about it must last for the whole motion, without
-// repeated starts and ends of spin.
+// The normal turns while the sphere rolls. The resistance to spinning about the normal must act during the whole
+// motion. The spin must not end and start again repeatedly.
 TEST(ASphereThatRollsOverACylinder, IsBrakedBySpinningResistanceWithoutLossOfTime) {
     ContactScene scene;
     scene.colliders = {{"log", CylinderShape{0.26, 1.6, {{0.6, 0, -0.07}, {1.19, 0.75, 0.72}, 140.0}}, 0}};
@@ -103,7 +104,8 @@ TEST(ASphereThatRollsOverACylinder, IsBrakedBySpinningResistanceWithoutLossOfTim
     }
 }
 
-// While it rolls, m v' = -rolling_friction m g 5/7. The spin about the normal falls by spinning_friction g / (2/5 r^2).
+// A rolling sphere obeys m v' = -rolling_friction m g 5/7. Its spin about the normal decreases at the rate
+// spinning_friction g / (2/5 r^2).
 TEST(ResistanceToTurning, BrakesWithAnyIntegrator) {
     for (const auto kind : {IntegratorKind::forward_euler, IntegratorKind::symplectic_euler,
                             IntegratorKind::implicit_euler, IntegratorKind::midpoint, IntegratorKind::velocity_verlet,
@@ -118,7 +120,8 @@ TEST(ResistanceToTurning, BrakesWithAnyIntegrator) {
         scene.time_step = 0.01;
         scene.duration = 1.0;
         const Particle end = end_of(scene);
-        // The sphere falls 1e-12 m in 5e-7 s. With forward Euler, whose first step is straight, it takes two steps.
+        // The sphere falls 1e-12 m before contact, which takes 5e-7 s. With forward Euler the fall takes two steps,
+        // because the path of the first step is straight.
         const double late = kind == IntegratorKind::forward_euler ? 1.01 * scene.time_step : 1e-6;
         const double braking = 5.0 / 7.0 * 0.02 * kG;
         const double slowing = 0.003 * kG / (0.4 * 0.01);

@@ -1,4 +1,4 @@
-// Friction on curved shapes depends on the whole normal force, including the centripetal part.
+// Friction on curved shapes depends on the whole normal force, including the part due to the centripetal acceleration.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -13,8 +13,8 @@ namespace RICOCHET_FILE {
 constexpr double kG = kStandardGravity;
 constexpr double kFriction = 0.02;  // small, so that spheres keep slipping
 
-/// Motion along a circle with a sign for the side. On the outside (1) the normal force is side * (g cos - v^2 / rho)
-/// with the angle from the highest point. On the inside (-1) the angle is from the lowest point.
+/// Motion along a circle of radius rho. On the outside, the normal force per mass is g cos(angle) - v^2 / rho, with the
+/// angle from the highest point. On the inside, it is g cos(angle) + v^2 / rho, with the angle from the lowest point.
 struct Slide {
     const char* name;
     double radius;
@@ -75,7 +75,8 @@ TEST_P(FrictionOnACurve, BrakesByTheWholeNormalForce) {
     for (const double step : {0.001, 0.01}) {
         const ContactScene scene = scene_of(slide, angle, speed, step);
         const Particle end = end_of(scene);
-        // Same bounds as for other motions on curves: 1e-4 at dt 1e-3, and by second order 1e-2 at ten times that.
+        // The bounds are the same as for other motions on curves. The bound is 1e-4 at a step of 1e-3, and by second
+        // order 1e-2 at a step of 1e-2.
         const double bound = 1e-4 * (step / 1e-3) * (step / 1e-3);
         EXPECT_NEAR(std::atan2(end.position.x, std::fabs(end.position.z)), y[0], bound) << step;
         EXPECT_NEAR(length(end.velocity), y[1], bound) << step;

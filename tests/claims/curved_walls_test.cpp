@@ -1,4 +1,4 @@
-// Mirrors with known paths: the sphere, the ellipsoid, the paraboloid and the box.
+// Reflections in mirrors with known paths: the sphere, the ellipsoid, the paraboloid and the box.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -50,12 +50,13 @@ TEST(EllipsoidalMirror, SendsRaysFromOneFocusThroughTheOtherAtEveryBounce) {
     RandomSequence random(1, 0, 0);
     for (int i = 0; i < test::scaled(300); ++i) {
         ForceInput state = at({4, 0, 0}, random.unit_vector());
-        (void)course.move(state, 45.0);  // 10 m per bounce, from focus to wall to focus
+        (void)course.move(state, 45.0);  // a path from focus to wall to focus has 10 m
         const std::vector<ContactRecord>& hits = course.scratch.records;
         ASSERT_GE(hits.size(), 4U);
         for (std::size_t k = 0; k < 4; ++k) {
             const Vec3 focus{k % 2 == 0 ? -4.0 : 4.0, 0, 0};
-            // Focal rays are an unstable orbit. Every bounce amplifies an error by at most (a + c) / (a - c) = 9.
+            // The path through the foci is unstable. Every bounce amplifies an error by at most the factor (a + c) / (a
+            // - c) = 9.
             ASSERT_LT(distance_of_line(hits[k].position, hits[k].velocity_after, focus),
                       1e-13 * std::pow(9.0, 1.0 + static_cast<double>(k)))
                 << "ray " << i << ", bounce " << k;
@@ -63,7 +64,8 @@ TEST(EllipsoidalMirror, SendsRaysFromOneFocusThroughTheOtherAtEveryBounce) {
     }
 }
 
-/// Returns the root mean square distance from the other focus after one bounce in a faceted ellipsoid.
+/// Returns the root mean square distance at which rays from one focus pass the other focus, after one bounce in a
+/// faceted ellipsoid.
 double focal_blur(int levels, int rays) {
     Placement placement;
     placement.scale = {5, 3, 3};
@@ -82,8 +84,8 @@ double focal_blur(int levels, int rays) {
     return std::sqrt(squares.mean());
 }
 
-// The normal of a facet has an error of its size over the radius of curvature. The blur therefore halves with the
-// facets.
+// The error of a facet's normal is proportional to the facet's size. The blur therefore halves if the facets are half
+// as large.
 TEST(EllipsoidalMirror, FocusesBetterAsAFinerSphereMesh) {
     const int rays = test::scaled(2000);
     const double coarse = focal_blur(5, rays);
@@ -92,7 +94,7 @@ TEST(EllipsoidalMirror, FocusesBetterAsAFinerSphereMesh) {
     EXPECT_NEAR(fine / coarse, 0.25, test::kSanitized ? 0.1 : 0.03);
 }
 
-/// z = (x^2 + y^2) / 4 has its focus at (0, 0, 1).
+/// Returns the mesh of the paraboloid z = (x^2 + y^2) / 4, whose focus is (0, 0, 1).
 TriangleMesh paraboloid(int cells) {
     TriangleMesh mesh = testing::floor_mesh(1.0, cells);
     for (Vec3& v : mesh.vertices) v.z = 0.25 * (v.x * v.x + v.y * v.y);
@@ -120,7 +122,7 @@ TEST(ParabolicMirror, CollectsABeamAlongItsAxisInTheFocus) {
     EXPECT_NEAR(blur_at_focus(128, rays) / coarse, 0.25, test::kSanitized ? 0.1 : 0.03);
 }
 
-/// Returns a coordinate that bounces between -1/2 and 1/2, by unfolding.
+/// Returns the coordinate of a point that bounces between -1/2 and 1/2. x is the coordinate without walls.
 double folded(double x) {
     const double u = std::fmod(x + 0.5, 2.0);
     const double positive = u < 0.0 ? u + 2.0 : u;

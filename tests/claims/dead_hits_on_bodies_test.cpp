@@ -1,5 +1,5 @@
-// One particle hits one free body without rebound. Later impacts, slides and rolls involve only the two of them. They
-// conserve momentum to rounding, and angular momentum approximately.
+// One particle hits one free body without rebound. Only these two take part in later impacts, sliding and rolling.
+// Momentum is conserved to rounding, and angular momentum approximately.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -65,8 +65,8 @@ Totals totals_of(const Simulation& simulation) {
             0.5 * (p.mass * length_squared(p.velocity) + inertia * length_squared(p.spin)) + body.kinetic_energy};
 }
 
-// If no load is consistent for a particle resting on a body, the search for it ends. The body must then not receive a
-// different load than the particle's path.
+// If a particle rests on a body, the solver searches for a load that is consistent with both motions. If there is no
+// such load, the search ends. The load on the body must then still be opposite to the load on the particle.
 TEST(AHeavyParticleOnAFreeBody, ConservesBothMomenta) {
     for (int k = 0; k < test::scaled(12) * test::case_factor(50); ++k) {
         Simulation simulation(dead_hit(static_cast<std::uint64_t>(k)));
@@ -76,7 +76,7 @@ TEST(AHeavyParticleOnAFreeBody, ConservesBothMomenta) {
         const std::string text = "case " + std::to_string(k);
         const double scale = length(before.momentum);
         EXPECT_LT(length(after.momentum - before.momentum), 1e-12 * scale) << text;
-        // Each of some hundred impacts moves the particle by its contact offset.
+        // Each of a few hundred impacts moves the particle by the contact offset, which changes the angular momentum.
         EXPECT_LT(length(after.angular_momentum - before.angular_momentum), 1e-8 * scale) << text;
         EXPECT_LT(after.energy, before.energy * (1.0 + 1e-3)) << text;
     }

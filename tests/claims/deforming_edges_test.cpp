@@ -1,4 +1,4 @@
-// Particles at rest or sliding on the edge between two faces of a deforming mesh behave as beside the edge.
+// Particles that rest or slide on the edge between two faces of a deforming mesh behave like particles beside the edge.
 //
 // A long run tests more turning planes.
 #include <gtest/gtest.h>
@@ -45,8 +45,8 @@ double number(std::uint64_t seed, std::uint32_t index, double low, double high) 
     return low + (high - low) * RandomSequence(seed, 0, index).uniform();
 }
 
-// A particle slides without friction from rest down z = 0.3 x. After 1 s the speed is g sin(a), on a grid line and
-// beside it.
+// A particle slides from rest down the plane z = 0.3 x without friction. After 1 s its speed is g sin(a) with the slope
+// angle a, on a grid line of the mesh and beside it.
 TEST(AStillSlopeWithKeys, LetsParticlesSlideEquallyOnGridLinesAndBesideThem) {
     const double slope = 0.3;
     const double along = std::sqrt(1.0 + slope * slope);
@@ -75,8 +75,8 @@ TEST(AStillSlopeWithKeys, LetsParticlesSlideEquallyOnGridLinesAndBesideThem) {
     }
 }
 
-// The two faces stay in one plane, which turns about the y axis at 1/10 rad/s. Only at the end is it too steep for
-// friction.
+// The two faces stay in one plane, which turns about the y axis at 1/10 rad/s. The plane is too steep for friction only
+// at the end.
 TEST(ATiltingQuad, KeepsAPointAtRestOnItsDiagonal) {
     const auto tilting = [](const Vec3& v, double time) { return Vec3{v.x, v.y, 0.1 * time * v.x}; };
     for (const double time_step : {0.005, 0.02}) {
@@ -97,7 +97,8 @@ TEST(ATiltingQuad, KeepsAPointAtRestOnItsDiagonal) {
     }
 }
 
-// Two faces stay in one plane. As it rises, its slope changes from key to key. The ball lies on their diagonal.
+// Two faces stay in one plane. The plane rises, and its slope changes from key to key. The ball lies on the common edge
+// of the faces.
 TEST(ARisingSheet, CarriesABallOnItsDiagonal) {
     const auto rising = [](const Vec3& v, double time) {
         return Vec3{v.x, v.y, 0.23 * time + 0.04 * std::sin(6.0 * time) * v.x};
@@ -120,8 +121,8 @@ TEST(ARisingSheet, CarriesABallOnItsDiagonal) {
     }
 }
 
-// The plane of a grid turns and rises at random. Points and spheres on grid lines become no faster than gravity and the
-// plane can make them.
+// The plane of a mesh grid turns and rises at random rates. The speed of points and spheres on grid lines stays below
+// the speed that gravity and the moving plane can cause.
 TEST(APlaneThatTurns, ThrowsNoParticleFromItsGridLines) {
     for (std::uint64_t seed = 1; seed <= (test::is_long_run() ? 40U : 2U); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
@@ -141,7 +142,7 @@ TEST(APlaneThatTurns, ThrowsNoParticleFromItsGridLines) {
         }
         Simulation simulation(std::move(setup));
         while (!simulation.finished()) simulation.step();
-        // The bound covers a fall at this slope and the speed of the rising plane within the grid.
+        // The bound is the speed of a fall along the slope plus the speed of the rising plane within the grid.
         const double most = kG * 0.6 + 4.0 * (std::fabs(rate.x) + std::fabs(rate.y)) + rate.z;
         for (const Vec3& v : simulation.particles().velocity) EXPECT_LT(length(v), most);
         expect_sound_and_whole(simulation);

@@ -49,7 +49,8 @@ int count_outside(const Simulation& simulation) {
     return outside;
 }
 
-// The side of each particle is determined after each step from the current mesh, and by the verifier.
+// After each step, the test determines the side of each particle from the current mesh. The verifier determines it
+// independently.
 TEST(ABreathingSphere, KeepsParticlesThatStartInside) {
     for (const double radius : {0.0, 0.03}) {
         for (const double restitution : {1.0, 0.5}) {
@@ -78,8 +79,8 @@ TEST(ABreathingSphere, KeepsParticlesThatStartInside) {
     }
 }
 
-/// Expects that each particle stays on its side of the first collider, a sheet, by the height of the sheet after each
-/// step.
+/// Expects that each particle stays above the first collider, which is a sheet. Compares the particle with the height
+/// of the sheet after each step.
 void expect_held_above(SimulationSetup setup) {
     Simulation simulation(std::move(setup));
     int below = 0;
@@ -114,7 +115,7 @@ TEST(AWavingSheet, KeepsTheRainAboveIt) {
     }
 }
 
-// Two halves fold about the y axis from flat to a narrow valley and open again, between walls.
+// Two halves of a strip between walls fold about the y axis. The flat strip becomes a narrow valley and opens again.
 TEST(AFoldingStrip, LetsNoParticleThrough) {
     for (const double radius : {0.0, 0.02}) {
         SCOPED_TRACE(radius);
@@ -134,7 +135,7 @@ TEST(AFoldingStrip, LetsNoParticleThrough) {
     }
 }
 
-// The same plate moves once by its vertices and once by its frame.
+// The same plate moves once by moving vertices and once by a moving frame.
 TEST(APlateWhoseVerticesTranslate, EqualsThePlateInAMovingFrame) {
     const Vec3 velocity{0.3, -0.2, 0.7};
     for (const double radius : {0.0, 0.05}) {
@@ -178,7 +179,8 @@ TEST(APlateWhoseVerticesTranslate, EqualsThePlateInAMovingFrame) {
     }
 }
 
-// A wall starts to move at speed u. The ball gains 2 u if the wall moves at the impact, and nothing if it is at rest.
+// A wall starts to move at speed u. The ball gains 2 u if the wall moves at the time of impact, and nothing if the wall
+// is still at rest.
 TEST(AnElasticBall, GainsTwiceTheSpeedOfTheSurface) {
     const auto press = [](const Vec3& v, double time) { return v + Vec3{0, 0, time < 1.0 ? 0.0 : 0.5 * (time - 1.0)}; };
     for (const auto& [start, expected] : {std::pair{0.5, 1.0}, std::pair{1.5, 2.0}}) {
@@ -192,7 +194,8 @@ TEST(AnElasticBall, GainsTwiceTheSpeedOfTheSurface) {
     }
 }
 
-// A plate rises, stops, and tilts. Particles on it without rebound move with it, and slide if it is steep.
+// A plate rises, stops and tilts. Particles on the plate move with it without rebound, and slide when the plate is
+// steep.
 TEST(WhatLiesOnAMeshThatDeforms, MovesWithIt) {
     const auto lift = [](const Vec3& v, double time) { return v + Vec3{0.2 * time, 0, 0.5 * time}; };
     for (const double radius : {0.0, 0.05}) {
@@ -212,12 +215,12 @@ TEST(WhatLiesOnAMeshThatDeforms, MovesWithIt) {
     }
 }
 
-// A particle counts as resting if it does not move relative to its support, which may move itself. Sliding and rolling
-// particles do not count.
+// A particle counts as resting if it does not move relative to its support, even if the support moves. Sliding and
+// rolling particles do not count.
 TEST(WhatLiesOnAMeshThatDeforms, CountsAsRestingIfItRestsOnIt) {
     struct Sample {
-        double lift;      ///< of the plate, in m/s
-        double friction;  ///< also in rolling
+        double lift;      ///< speed at which the plate rises, in m/s
+        double friction;  ///< sliding and rolling friction
         double speed;     ///< initial speed along the plate, in m/s
         std::uint64_t resting;
     };
@@ -239,7 +242,8 @@ TEST(WhatLiesOnAMeshThatDeforms, CountsAsRestingIfItRestsOnIt) {
     }
 }
 
-/// Runs a particle on a mesh with two equal keys and on the same mesh at rest. Expects the same path to first order.
+/// Runs a particle on a deforming mesh with two equal keys, and on the same mesh at rest. Expects the same path to
+/// first order in the time step.
 void expect_as_at_rest(const TriangleMesh& mesh, const Particle& particle, double time_step, double duration) {
     std::vector<Vec3> ends;
     for (const bool deforms : {false, true}) {
@@ -306,8 +310,8 @@ TEST(AMeshWithEqualKeys, LetsParticlesSlideDownItsDome) {
     }
 }
 
-// Friction pulls the particle to 0.4 m/s before the key, and by 0.37 m/s in the opposite direction after it. A step
-// ends on the key.
+// Before the key, friction accelerates the particle to 0.4 m/s. After the key, friction changes the velocity by 0.37
+// m/s in the opposite direction. A step ends exactly at the key.
 TEST(WorkOnAPlate, UsesTheVelocityBeforeAKeyUntilTheKey) {
     const double key = 0.63;
     const auto pose_at = [&](double time) {
@@ -373,7 +377,7 @@ TEST(MeshesThatDeform, ResumeToTheSameBitsFromASavedState) {
         return simulation->state_hash();
     };
     EXPECT_EQ(restored(lung_setup()), whole.state_hash());
-    // Another motion of the same mesh is another setup.
+    // A setup with another motion of the same mesh must be refused.
     SimulationSetup other = lung_setup();
     other.colliders[0].shape = deforming(sphere_mesh({}, 1.0, 1), breathing, evenly(0.0, 2.0 * kPi / 7.0, 22));
     EXPECT_THROW(static_cast<void>(restored(std::move(other))), InputError);

@@ -1,4 +1,4 @@
-// A particle on the ridge of a deforming mesh rests there or slides off, as on a ridge at rest.
+// A particle on the ridge of a deforming mesh rests there or slides off, like a particle on a ridge at rest.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,14 +14,14 @@ namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
-constexpr double kPlace = 0.7;  // along the ridge, in m
+constexpr double kPlace = 0.7;  // start position along the ridge, in m
 
-/// Rotates about the z axis, so that the coordinates of vertices are rounded.
+/// Rotates a point about the z axis, so that the coordinates of vertices are not exact.
 Vec3 turned(const Vec3& v, double angle) {
     return {v.x * std::cos(angle) - v.y * std::sin(angle), v.x * std::sin(angle) + v.y * std::cos(angle), v.z};
 }
 
-/// Two faces with equal slope that fall off to both sides of the y axis, rotated and moving.
+/// Two faces that descend with equal slope to both sides of the y axis. They are rotated and move.
 struct Ridge {
     double slope = 0.1;
     double angle = 0.0;
@@ -68,7 +68,8 @@ void for_each_ridge(std::vector<double> slopes, const Check& check) {
     }
 }
 
-// The point starts on the ridge or within rounding of it. Friction of 0.5 is just enough on a slope of 0.5.
+// The point starts on the ridge or within rounding of it. On a slope of 0.5, a friction coefficient of 0.5 is just
+// enough.
 TEST(ADeformingRidge, HoldsAPointByFriction) {
     for_each_ridge({0.1, 0.4, 0.5}, [](Ridge ridge) {
         ridge.friction = 0.5;
@@ -82,8 +83,8 @@ TEST(ADeformingRidge, HoldsAPointByFriction) {
     });
 }
 
-// The point starts from rest. After 1 s it has descended by g sin^2(a) / 2. On the ridge itself it may stay, as on a
-// ridge at rest.
+// The point starts from rest. After 1 s it has descended by g sin^2(a) / 2 with the slope angle a. A point exactly on
+// the ridge may stay there, as on a ridge at rest.
 TEST(ADeformingRidge, LetsAPointSlideOff) {
     for_each_ridge({0.1, 0.5, 1.5}, [](const Ridge& ridge) {
         const double translation = 0.5 * kG * ridge.slope / (1.0 + ridge.slope * ridge.slope);
@@ -100,7 +101,7 @@ TEST(ADeformingRidge, LetsAPointSlideOff) {
     });
 }
 
-// The spheres move around an edge that turns too. Each sphere leaves it permanently.
+// The spheres roll around an edge that also turns. Each sphere leaves the edge permanently.
 TEST(ADeformingRidge, ReleasesSpheresThatRollAroundIt) {
     for (const double turning : {-0.3, -0.1, 0.1, 0.3}) {
         for (const double along : {-1.0, 1.0}) {

@@ -1,4 +1,4 @@
-/// \file Meshes that deform by given functions. Shared by their tests.
+/// \file Meshes that deform by given functions, for several tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,7 +24,8 @@ namespace ricochet::testing {
 
 using Deform = std::function<Vec3(const Vec3& vertex, double time)>;
 
-/// Returns a mesh whose vertices follow a function. A repeating mesh ends exactly at its first positions.
+/// Returns a mesh whose vertices follow a function. If the motion repeats, the last key has exactly the positions of
+/// the first.
 [[nodiscard]] inline MeshShape deforming(const TriangleMesh& mesh, const Deform& deform, std::vector<double> times,
                                          MeshEnds ends = MeshEnds::hold) {
     const double first = times.front();
@@ -58,25 +59,26 @@ using Deform = std::function<Vec3(const Vec3& vertex, double time)>;
     return mesh;
 }
 
-/// Returns a vertex of a shape that grows, shrinks and is sheared.
+/// Returns the position of a vertex at a time, for a shape that grows, shrinks and is sheared.
 [[nodiscard]] inline Vec3 breathing(const Vec3& vertex, double time) {
     const double size = 1.0 + 0.25 * std::sin(7.0 * time);
     return size * vertex + 0.05 * std::sin(11.0 * time) * Vec3{vertex.y, vertex.z, vertex.x};
 }
 
-/// Returns a vertex of a sheet with waves in both directions.
+/// Returns the position of a vertex at a time, for a sheet with waves in both directions.
 [[nodiscard]] inline Vec3 waving(const Vec3& v, double time) {
     return {v.x + 0.05 * std::sin(5.0 * v.y + 4.0 * time), v.y,
             0.2 * std::sin(4.0 * v.x - 9.0 * time) + 0.1 * std::cos(3.0 * v.y + 5.0 * time)};
 }
 
-/// Returns a vertex of two halves that fold about the y axis from flat to a narrow valley and open again.
+/// Returns the position of a vertex at a time, for a strip that folds about the y axis. The flat strip becomes a narrow
+/// valley and opens again.
 [[nodiscard]] inline Vec3 folding(const Vec3& v, double time) {
     const double angle = 1.3 * std::pow(std::sin(2.0 * time), 2);
     return {v.x * std::cos(angle), v.y, std::fabs(v.x) * std::sin(angle)};
 }
 
-/// Returns the z coordinate of a sheet above a point, if the sheet is a graph.
+/// Returns the z coordinate of a sheet at (x, y). The sheet must have one height at every such point.
 [[nodiscard]] inline double height_of(const TriangleMesh& mesh, double x, double y) {
     for (const Triangle& t : mesh.triangles) {
         const Vec3 a = mesh.vertices[t[0]];
@@ -90,7 +92,7 @@ using Deform = std::function<Vec3(const Vec3& vertex, double time)>;
     return std::nan("");
 }
 
-/// Expects that the verifier found no violation and no particle was given up.
+/// Expects that the verifier found no violation and that no particle was frozen.
 inline void expect_sound(const Simulation& simulation) {
     const SimulationStatistics& statistics = simulation.statistics();
     EXPECT_EQ(statistics.violations, 0U);

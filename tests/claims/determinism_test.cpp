@@ -21,7 +21,8 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-/// Debris with losses in a closed body: emitters, gravity, drag, friction, resting, lifetimes.
+/// Debris in a closed body that dissipates energy. The scene has emitters, gravity, drag, friction, resting particles
+/// and lifetimes.
 struct Case {
     const char* name;
     IntegratorKind integrator;
@@ -112,7 +113,7 @@ TEST_P(Determinism, TheStateDoesNotDependOnWhetherRestingParticlesSleep) {
         setup.acceleration.sleeping = sleeping;
         setup.options.duration = 4.0;
         setup.materials[1] = {"felt", 0.3, 0.5};
-        setup.materials[1].rolling_friction = 0.2;  // without it, spheres keep rolling
+        setup.materials[1].rolling_friction = 0.2;  // without rolling friction, spheres would never stop
         setup.emitters[0].rate = {};
         setup.emitters[0].lifetime = {100.0, 0.0};
         return Simulation(std::move(setup));

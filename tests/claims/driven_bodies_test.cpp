@@ -1,4 +1,4 @@
-// Bodies that particles push receive the momentum that the particles lose, to rounding, and no energy is created.
+// Dynamic bodies receive the momentum that particles lose, to rounding, and no energy is created.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -69,7 +69,7 @@ SimulationSetup setup_with(std::vector<BodyDescription> bodies, const Vec3& size
     return setup;
 }
 
-/// Totals of particles, as solid spheres, and bodies.
+/// Sums over all bodies and particles. Particles have the inertia of solid spheres.
 struct Totals {
     Vec3 momentum;
     Vec3 angular_momentum;  // about the origin
@@ -99,7 +99,8 @@ void run(Simulation& simulation) {
     EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
 }
 
-// m v + M V is conserved and the relative velocity is reversed: v' = (m - M) / (m + M) v, V' = 2 m / (m + M) v.
+// The momentum m v + M V is conserved and the relative velocity is reversed. Therefore v' = (m - M) / (m + M) v and V'
+// = 2 m / (m + M) v.
 TEST(AnElasticHit, ExchangesVelocitiesWithABodyAsInClosedForm) {
     for (const JointKind joint : {JointKind::free, JointKind::slider}) {
         for (const double mass : {0.1, 1.0, 10.0, 1000.0}) {
@@ -119,7 +120,7 @@ TEST(AnElasticHit, ExchangesVelocitiesWithABodyAsInClosedForm) {
     }
 }
 
-// On a hinge the effective mass is I / arm^2.
+// The effective mass of a body on a hinge is I / arm^2.
 TEST(AnElasticHit, TurnsADoorByItsMomentOfInertia) {
     const Vec3 size{0.1, 2, 1};
     BodyDescription door = box_body("door", 12.0, size, JointKind::hinge, {0, 0, 1});
@@ -134,7 +135,7 @@ TEST(AnElasticHit, TurnsADoorByItsMomentOfInertia) {
     EXPECT_NEAR(simulation.bodies()[0].rate, -0.8 * 0.5 * (2.0 - after) / inertia, 1e-13);
 }
 
-// Hits off the centre, with friction and spin, conserve momentum and angular momentum. Energy only decreases.
+// Off-centre impacts with friction and spin conserve momentum and angular momentum. Energy only decreases.
 TEST(ACloudOnATumblingBody, ConservesMomentumAndAngularMomentum) {
     for (const double restitution : {1.0, 0.6}) {
         for (const double friction : {0.0, 0.5}) {
@@ -159,7 +160,8 @@ TEST(ACloudOnATumblingBody, ConservesMomentumAndAngularMomentum) {
             while (!simulation.finished()) {
                 simulation.step();
                 const Totals now = totals_of(simulation);
-                // The integration of the body's rotation has second order. Hits take energy or conserve it.
+                // The integration of the body's rotation has an energy error of second order. Impacts conserve or
+                // reduce energy.
                 EXPECT_LT(now.energy, energy * (1.0 + 1e-6));
                 energy = now.energy;
             }
@@ -172,9 +174,9 @@ TEST(ACloudOnATumblingBody, ConservesMomentumAndAngularMomentum) {
     }
 }
 
-// A piston between two gases in a tube has elastic hits from both sides.
+// Particles of two gases hit a piston in a tube elastically from both sides.
 TEST(APistonBetweenTwoGases, ConservesEnergyThroughHundredsOfHits) {
-    for (const double mass : {0.1, 1.0, 100.0}) {  // of one particle, of ten, of a thousand
+    for (const double mass : {0.1, 1.0, 100.0}) {  // the mass of one particle, of ten and of a thousand particles
         const Vec3 size{0.2, 1.2, 1.2};
         auto setup = setup_with({box_body("piston", mass, size, JointKind::slider)}, size, 0.02, 12.0);
         setup.colliders.push_back({"tube", CuboidShape{{4, 1, 1}, {}}, 0});
@@ -202,7 +204,8 @@ TEST(APistonBetweenTwoGases, ConservesEnergyThroughHundredsOfHits) {
     }
 }
 
-// A pile of spheres without restitution lies on a plate on a spring. It comes to rest and loses no simulated time.
+// A pile of spheres without restitution lies on a plate that a spring supports. The pile comes to rest and loses no
+// simulated time.
 TEST(APileOnAPlate, ComesToRestAndIsCarried) {
     const Vec3 size{1.2, 1.2, 0.1};
     BodyDescription plate = box_body("plate", 20.0, size, JointKind::slider, {0, 0, 1});
@@ -241,7 +244,8 @@ TEST(TheRecordOfABody, EqualsItsMomentumAndItsWork) {
     EXPECT_GT(given.work, 0.0);
 }
 
-// A plate on a hinge is a pendulum. It is compared with a fine integration of its equation, to second order.
+// A plate on a hinge is a pendulum. The test compares it with a fine integration of the pendulum equation and expects
+// second order.
 TEST(ABodyOnAHinge, SwingsLikeAPendulum) {
     const auto angle_at = [](double time_step) {
         const Vec3 size{0.1, 0.1, 1.0};
@@ -271,7 +275,8 @@ TEST(ABodyOnAHinge, SwingsLikeAPendulum) {
     EXPECT_NEAR(coarse / fine, 4.0, 0.6);
 }
 
-// Dry friction reduces the rate by f t / I and then stops it. A motor raises the rate by M t / I up to its limit.
+// Dry friction reduces the rate by f t / I until the body stops. A motor raises the rate by M t / I up to the target
+// rate.
 TEST(FrictionAndMotor, ChangeTheRateUniformlyAndThenKeepIt) {
     const Vec3 size{0.1, 2, 1};
     BodyDescription body = box_body("door", 12.0, size, JointKind::hinge, {0, 0, 1});
@@ -291,7 +296,8 @@ TEST(FrictionAndMotor, ChangeTheRateUniformlyAndThenKeepIt) {
         run(driven);
         EXPECT_NEAR(driven.bodies()[0].rate, std::min(1.5, 8.0 * duration / inertia), 1e-12);
     }
-    // The motor works against friction, and the drive against friction and damping. The step must not bias the result.
+    // The motor acts against friction. The drive acts against friction and damping. The results must not depend on the
+    // time step.
     body.settings.friction = 3.0;
     body.settings.motor_most = 40.0;
     for (const double time_step : {0.01, 0.1}) {
@@ -305,11 +311,12 @@ TEST(FrictionAndMotor, ChangeTheRateUniformlyAndThenKeepIt) {
     EXPECT_NEAR(damped.bodies()[0].rate, (6.0 - 1.0) / 2.0, 1e-9);
 }
 
-// A free body without contact conserves its angular momentum. Its energy error falls by four at half the step.
+// A free body without contact conserves its angular momentum. Its energy error falls by the factor four at half the
+// step.
 TEST(AFreeBody, TumblesWithConstantAngularMomentum) {
     const auto energy_error = [](double time_step) {
         BodyDescription body = box_body("block", 3.0, {1.0, 0.6, 0.2}, JointKind::free);
-        body.angular_velocity = {0.3, 4.0, 0.2};  // near the unstable axis
+        body.angular_velocity = {0.3, 4.0, 0.2};  // a rotation close to the unstable axis
         Simulation simulation(setup_with({body}, {1.0, 0.6, 0.2}, time_step, 5.0));
         const BodyState before = simulation.bodies()[0];
         double largest = 0.0;
@@ -319,7 +326,7 @@ TEST(AFreeBody, TumblesWithConstantAngularMomentum) {
         }
         const BodyState after = simulation.bodies()[0];
         EXPECT_LT(length(after.angular_momentum - before.angular_momentum), 1e-14);
-        EXPECT_GT(largest, 2.0);  // it flips over
+        EXPECT_GT(largest, 2.0);  // the body flips over
         return std::fabs(after.kinetic_energy / before.kinetic_energy - 1.0);
     };
     const double coarse = energy_error(0.01);
@@ -327,7 +334,7 @@ TEST(AFreeBody, TumblesWithConstantAngularMomentum) {
     EXPECT_LT(energy_error(0.005), 0.35 * coarse);
 }
 
-// The spring also carries the weight of particles at rest on the plate.
+// The spring carries the weight of the plate and of the particles at rest on it.
 TEST(APlateOnASpring, SinksByItsOwnWeightAndItsLoad) {
     for (const auto& [radius, restitution] : {std::pair(0.0, 0.3), std::pair(0.05, 0.3), std::pair(0.05, 0.0)}) {
         const Vec3 size{1, 1, 0.1};
@@ -345,7 +352,7 @@ TEST(APlateOnASpring, SinksByItsOwnWeightAndItsLoad) {
     }
 }
 
-/// Returns grains that fall on a plate on a spring and lie on it.
+/// Returns grains that fall onto a plate on a spring and come to rest on it.
 SimulationSetup grains_on_a_plate() {
     const Vec3 size{1, 1, 0.1};
     BodyDescription plate = box_body("plate", 4.0, size, JointKind::slider, {0, 0, 1});
@@ -382,7 +389,7 @@ TEST(BodiesThatArePushed, ResumeFromASavedStateToTheSameBits) {
     }
 }
 
-// A pendulum without a collider swings beside a belt. Loads on the belt must not affect it.
+// A pendulum without a collider swings beside a belt. Loads on the belt must not affect the pendulum.
 TEST(ABodyWithoutColliders, SwingsBesideABelt) {
     BodyDescription rod = box_body("rod", 2.0, {0.1, 0.1, 1.0}, JointKind::hinge, {0, 1, 0});
     rod.center = {0, 0, -0.5};

@@ -1,7 +1,7 @@
 // Statistics of emitted particles. Every quantity is uniform between mean - spread and mean + spread, and independent
 // of the others. Births do not depend on time steps, threads or output.
-// Seeds are fixed. Each chi-square stays below the value that chance exceeds once in a million, and each mean within
-// five standard errors.
+// Seeds are fixed. Each chi-square value is below the limit that random data exceed once in a million cases. Each mean
+// is within five standard errors of its expected value.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -117,7 +117,7 @@ TEST(EmitterStatistics, AttributesOfParticlesChangeNothingElse) {
         ASSERT_EQ(all[i].velocity, none[i].velocity);
         ASSERT_EQ(all[i].lifetime, none[i].lifetime);
         ASSERT_EQ(all[i].mass, none[i].mass);
-        ASSERT_EQ(all[i].attributes[2], some[i].attributes[2]);  // one attribute does not change another
+        ASSERT_EQ(all[i].attributes[2], some[i].attributes[2]);  // drawing one attribute does not change another
     }
 }
 
@@ -155,8 +155,8 @@ TEST(EmitterStatistics, ARatePerFrameIsDrawnForEveryFrameAndSpreadEvenlyInsideIt
         sum += count;
         squares += (count - 50.0) * (count - 50.0);
     }
-    // The distribution is uniform with half width 20 and variance 133.3. The mean of 2400 frames has a standard
-    // deviation of 0.236. The limit is five of them.
+    // The number of births per frame is uniform with half width 20 and variance 133.3. The mean over 2400 frames has a
+    // standard deviation of 0.236. The limit is five standard deviations.
     EXPECT_NEAR(sum / frames, 50.0, 1.2);
     EXPECT_NEAR(squares / frames, 400.0 / 3.0, 5 * std::sqrt(0.8 / frames) * 133.3);
     for (const double place : places) EXPECT_NEAR(place, sum / 20.0, 0.02 * sum / 20.0);
@@ -164,11 +164,11 @@ TEST(EmitterStatistics, ARatePerFrameIsDrawnForEveryFrameAndSpreadEvenlyInsideIt
 
 TEST(EmitterStatistics, ARatePerAreaEqualsTheRatePerFrameTimesTheScreenArea) {
     EmitterDescription emitter;
-    emitter.shape = BoxShape{{}, {3, 2, 0}};  // 600 pixels, see ScreenArea
+    emitter.shape = BoxShape{{}, {3, 2, 0}};  // the box covers 600 pixels, see ScreenArea
     emitter.rate_per_area = {0.01, 0.0};
     const EmitterSurroundings surroundings{30.0, ReferenceCamera{{0, 0, 10}, {}, 90.0, 200.0}, {}};
     EXPECT_EQ(Emitter(emitter, 1, 0, surroundings).births(0.0, 10.0).size(), 1800U);
-    emitter.shape = BoxShape{{0, 0, -10}, {3, 2, 0}};  // twice as far
+    emitter.shape = BoxShape{{0, 0, -10}, {3, 2, 0}};  // twice as far from the camera
     EXPECT_EQ(Emitter(emitter, 1, 0, surroundings).births(0.0, 10.0).size(), 450U);
 }
 

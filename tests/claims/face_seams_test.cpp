@@ -1,5 +1,5 @@
-// The seam of two coplanar triangles is not an edge. Particles on it or sliding over it behave as on one plane, for any
-// position of the face and any rounding of its triangles.
+// The seam between two coplanar triangles is not an edge. Particles on the seam, or sliding over it, behave as on a
+// single plane. This holds for any position of the face and any rounding of its triangles.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,14 +13,15 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-/// Particle on a face of a rotated box. The contact point lies on the seam of the face, at the world's origin.
+/// A particle on a face of a rotated box. The contact point is on the seam between the face's triangles, at the world's
+/// origin.
 struct OnSeam {
     ContactScene scene;
     Vec3 heading;
     std::string text;
 };
 
-/// Speed of the belt, or initial speed, and gravity, for a box of size 1.
+/// Speed of the belt or of the particle at the start, in m/s, and gravity, in m/s^2, for a box of size 1.
 constexpr double kSpeed = 0.2;
 constexpr double kPull = 10.0;
 
@@ -28,7 +29,8 @@ Vec3 unit_along(std::size_t axis, double sign) {
     return {axis == 0 ? sign : 0.0, axis == 1 ? sign : 0.0, axis == 2 ? sign : 0.0};
 }
 
-/// Returns a box of random size, rotation and face. heading: along an edge of the face, across it, or along its seam.
+/// Returns a particle on a random face of a box of random size and rotation. The heading is along an edge of the face,
+/// across the face, or along its seam.
 OnSeam on_seam(std::uint64_t k, bool has_belt) {
     RandomSequence random(91, 0, k);
     const double scale = std::exp(4.0 * random.uniform() - 2.0);
@@ -88,14 +90,14 @@ TEST(SeamOfAFace, LetsABeltCarryAParticleOnIt) {
         const double belt = length(on.scene.materials[0].motion.velocity);
         const double carried = on.scene.particle.radius > 0.0 ? 2.0 / 7.0 * belt : belt;
         const Particle end = end_of(on.scene);
-        // The belt's friction is half of the weight until the particle reaches the belt's speed.
+        // The friction force is half of the weight until the slip on the belt ends.
         const double gripping = carried / (0.5 * length(on.scene.gravity));
         ASSERT_NEAR(dot(end.velocity, on.heading), carried, 1e-6 * belt) << on.text;
         ASSERT_NEAR(dot(end.position, on.heading), carried * (1.0 - 0.5 * gripping), 1e-5 * belt) << on.text;
     }
 }
 
-// All triangles of a fan meet at the particle's position.
+// All triangles of the flat fan meet at the particle's position.
 TEST(HubOfAFlatFan, HasNoEffectOnAParticleThatABeltCarriesAway) {
     for (int k = 0; k < test::scaled(100) * test::case_factor(20); ++k) {
         RandomSequence random(95, 0, static_cast<std::uint64_t>(k));

@@ -1,4 +1,5 @@
-// Deforming meshes leave particles no space for a while. The particles stall, and continue when there is space again.
+// Deforming meshes temporarily leave no space for particles. The particles stall, and continue when there is space
+// again.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +22,7 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-/// Runs to the end. Returns the number of particle steps that were pinched after a time, in s.
+/// Runs to the end. Returns the number of particle steps that were pinched later than `time`, in s.
 std::uint64_t squeezed_after(double time, Simulation& simulation) {
     std::optional<std::uint64_t> before;
     while (!simulation.finished()) {
@@ -31,8 +32,8 @@ std::uint64_t squeezed_after(double time, Simulation& simulation) {
     return simulation.statistics().squeezed - before.value_or(0);
 }
 
-/// Returns a plate beside the wall x = 0. It approaches the wall to `gap` at 1 s and returns, as a deforming mesh or as
-/// a body.
+/// Returns a plate beside the wall x = 0. The plate approaches the wall up to a distance of `gap` at 1 s and returns.
+/// It is a deforming mesh or a moving body.
 SimulationSetup pinching(double gap, bool deforms, double restitution, double time_step) {
     SimulationSetup setup = setup_of(time_step, 3.0, {"", restitution, 0.0}, {0, 0, -0.05});
     setup.options.verify = true;
@@ -96,7 +97,7 @@ TEST(PointsThatADeformingPlateLeavesNoRoom, AreFreeAgainBesideIt) {
     }
 }
 
-/// Box of 2 m whose lid passes through its floor between 0 and 2 s. Meanwhile the box moves and turns.
+/// A box of 2 m whose lid moves through its floor and back between 0 and 2 s. Meanwhile the box moves and turns.
 struct FoldingBox {
     Vec3 translation;
     Vec3 axis{0, 0, 1};
@@ -113,7 +114,8 @@ struct FoldingBox {
     }
 };
 
-/// Expects that all particles are in the box at the end of the run, by winding numbers, and that none is stalled.
+/// Expects that all particles are in the box at the end of the run and that none is stalled. Winding numbers determine
+/// the side of each particle.
 void expect_all_in_the_box(const FoldingBox& fold, double restitution, double time_step, std::uint64_t seed) {
     SimulationSetup setup = setup_of(time_step, 4.0, {"", restitution, 0.0});
     setup.options.verify = true;
@@ -156,7 +158,7 @@ TEST(ABoxThatFoldsThroughItself, FreesThemAfterAnyMotionAndRotation) {
     }
 }
 
-// The mesh passes through a particle and stays beyond it. The particle stalls, and the verifier reports its final
+// The mesh passes through a particle and does not return. The particle stalls, and the verifier reports its final
 // position.
 TEST(AParticleThatAMeshHasPassed, StallsAndIsReportedAtTheEndOfTheRun) {
     SimulationSetup setup = setup_of(0.02, 1.5, {"", 0.2, 0.0});

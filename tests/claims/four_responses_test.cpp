@@ -1,5 +1,5 @@
 // Compares the responses exact, rollback, project and penalty: their guarantees, their limits, and their common results
-// as steps shrink.
+// for small steps.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -141,16 +141,16 @@ TEST(PenaltyWarning, AsksForEnoughSubsteps) {
     EXPECT_FALSE(warnings(enough - 1).empty());
 }
 
-/// A bullet is shot at a plate of 1 cm, in steps of 1 ms.
+/// Scene with a bullet that is shot at a plate 1 cm thick, in steps of 1 ms.
 constexpr double kThickness = 0.01;
 constexpr double kStep = 1e-3;
 constexpr double kOffset = 1e-4;
 constexpr std::uint32_t kSubsteps = 4;
-constexpr double kStiffness = 4e3;  // in N/m; for one gram omega = 2000 / s, half a radian per substep
+constexpr double kStiffness = 4e3;  // in N/m; for one gram omega = 2000 / s, which is half a radian per sub-step
 
 struct Shot {
     double travel;  ///< in m per step
-    double phase;  ///< distance of the end of the first step behind the plate's front, relative to the travel of a step
+    double phase;   ///< phase of the steps: fraction of a step's travel at which a step ends behind the plate's front
 };
 
 std::vector<Shot> shots() {
@@ -161,7 +161,7 @@ std::vector<Shot> shots() {
     return list;
 }
 
-/// The bullet's contacts and penetrations, and whether it ends in front of the plate.
+/// Numbers of contacts and penetrations of the bullet, and whether the bullet ends in front of the plate.
 struct Flown {
     std::uint64_t contacts = 0;
     std::uint64_t penetrations = 0;
@@ -188,7 +188,7 @@ Flown shoot(ResponseKind kind, const Shot& shot) {
             simulation.particles().position[0].x < 0.0 && simulation.particles().velocity[0].x < 0.0};
 }
 
-/// Returns true if a step of this length ends in [from, to] behind the front.
+/// Returns true if a step of this length ends between `from` and `to` behind the plate's front.
 bool some_step_ends_in(double from, double to, double translation, double start) {
     const double first = start + std::ceil((from - start) / translation) * translation;
     return first <= to;
@@ -204,7 +204,7 @@ TEST(BulletAndPlate, ExactAndRollbackStopEveryBullet) {
     }
 }
 
-// Project stops the bullet if a step ends in the near half of the plate or in the layer before it.
+// The response project stops the bullet if a step ends in the near half of the plate or in the contact layer before it.
 TEST(BulletAndPlate, ProjectStopsABulletIfAndOnlyIfAStepEndsInTheNearHalf) {
     for (const Shot& shot : shots()) {
         SCOPED_TRACE(fmt::format("travel {}, phase {}", shot.travel, shot.phase));
@@ -230,8 +230,8 @@ TEST(BulletAndPlate, ProjectMissesSomePhasesBeyondHalfAPlatePerStepAndAllBeyondA
     EXPECT_GT(count(1.1 * (kThickness + 2.0 * kOffset), unseen), 0);
 }
 
-// Every substep that ends in the plate pushes. The bullet returns if the first such substep ends in the near half, and
-// if the spring is hard enough.
+// Every sub-step that ends in the plate pushes the bullet. The bullet returns if the first such sub-step ends in the
+// near half and the spring is stiff enough.
 TEST(BulletAndPlate, PenaltyStopsSlowBulletsAndMissesThePlateIfNoSubstepEndsInIt) {
     const double omega = std::sqrt(kStiffness / 1e-3);
     int slow = 0;
@@ -255,7 +255,7 @@ TEST(BulletAndPlate, PenaltyStopsSlowBulletsAndMissesThePlateIfNoSubstepEndsInIt
     EXPECT_GT(slow, 10);
 }
 
-/// A ball is thrown down a slope, with losses and friction. It bounces three times.
+/// Scene with a ball that is thrown down a slope with friction. It bounces three times and loses energy.
 constexpr double kDuration = 1.45;
 constexpr double kRestitution = 0.8;
 constexpr double kFriction = 0.1;
@@ -263,19 +263,19 @@ constexpr double kAngle = 0.3;
 const Vec3 kNormal{std::sin(kAngle), 0, std::cos(kAngle)};
 const Vec3 kDownhill{std::cos(kAngle), 0, -std::sin(kAngle)};
 const Vec3 kAcross{0, 1, 0};
-constexpr double kHeight = 0.5;     // along the normal, in m
-const Vec3 kThrown{1.3, 0.4, 0.2};  // downhill, across, along the normal, in m/s
+constexpr double kHeight = 0.5;     // start height along the normal, in m
+const Vec3 kThrown{1.3, 0.4, 0.2};  // components downhill, across and along the normal, in m/s
 
 struct EndState {
-    Vec3 position;  ///< downhill, across, along the normal
+    Vec3 position;  ///< components downhill, across and along the normal
     Vec3 velocity;
     [[nodiscard]] double distance(const EndState& other) const {
         return length(position - other.position) + length(velocity - other.velocity);
     }
 };
 
-/// Returns the end of the flight by closed forms from impact to impact. Friction slips at every impact and reduces the
-/// tangential speed by mu (1 + e) v.
+/// Returns the state at the end, computed by closed forms from impact to impact. The ball slips at every impact, so
+/// friction reduces the tangential speed by mu (1 + e) v.
 EndState closed_form() {
     const Vec3 pull{kG * std::sin(kAngle), 0, -kG * std::cos(kAngle)};
     EndState now{{0, 0, kHeight}, kThrown};
@@ -325,8 +325,8 @@ struct Errors {
     [[nodiscard]] double slope() const { return fitted_slope(steps, errors); }
 };
 
-/// Returns errors for steps over more than six halvings. Step numbers are uneven, so that impacts occur anywhere in a
-/// step.
+/// Returns the errors for steps that differ by more than six halvings. The numbers of steps are irregular, so that
+/// impacts occur at any fraction of a step.
 Errors errors_of(ResponseKind kind, double factor, const std::function<void(SimulationOptions&)>& set = {}) {
     Errors result;
     for (double steps = 100.0; steps < 100.0 * 80.0; steps *= factor) {
@@ -347,7 +347,7 @@ TEST(FourResponses, RollbackMatchesTheClosedFormToFirstOrderInItsToleranceWithAn
             const double error = error_of(ResponseKind::rollback, steps, [&](SimulationOptions& options) {
                 options.rollback.time_tolerance = tolerance;
             });
-            // accelerations and their errors over three bounces
+            // the factor covers accelerations, and the growth of errors over three bounces
             EXPECT_LT(error, 100.0 * tolerance) << steps << " steps";
             all.steps.push_back(tolerance);
             all.errors.push_back(error);
@@ -360,7 +360,7 @@ TEST(FourResponses, ProjectMatchesTheClosedFormToFirstOrderInTheStep) {
     EXPECT_NEAR(errors_of(ResponseKind::project, 1.11).slope(), 1.0, 0.2);
 }
 
-// Contacts last two steps, and substeps shrink faster than the steps.
+// Contacts last two steps, and the length of sub-steps decreases faster than the length of steps.
 TEST(FourResponses, PenaltyMatchesTheClosedFormToFirstOrderIfContactsAreResolvedBetter) {
     const auto resolved = [](SimulationOptions& options) {
         options.penalty.substeps = static_cast<std::uint32_t>(std::lround(0.0725 / options.time_step));
@@ -369,7 +369,8 @@ TEST(FourResponses, PenaltyMatchesTheClosedFormToFirstOrderIfContactsAreResolved
     EXPECT_NEAR(errors_of(ResponseKind::penalty, 1.2, resolved).slope(), 1.0, 0.2);
 }
 
-// With a fixed number of substeps per contact, the error of the restitution remains, and so does the error at the end.
+// With a fixed number of sub-steps per contact, the restitution has a constant error. The error at the end of the run
+// therefore does not vanish.
 TEST(FourResponses, PenaltyKeepsAnErrorWithFixedSubstepsPerContact) {
     const Errors plain = errors_of(ResponseKind::penalty, 1.11);
     const auto tail = plain.errors.end() - 12;
@@ -383,7 +384,7 @@ TEST(FourResponses, PenaltyKeepsAnErrorWithFixedSubstepsPerContact) {
               0.3 * *std::max_element(tail, plain.errors.end()));
 }
 
-/// Response, with a flag for the rollback of the whole system.
+/// A response, with a flag for the rollback of the whole system.
 struct Answer {
     ResponseKind kind;
     bool global = false;
@@ -415,7 +416,7 @@ SimulationSetup marbles(const Answer& of) {
     setup.colliders[1].material = 1;
     EmitterDescription emitter;
     emitter.shape = SphereShape{{0.1, 0.2, 1.0}, 0.4, false};
-    emitter.burst = 300;  // more than a block of particles
+    emitter.burst = 300;  // more particles than a block
     emitter.speed = {2.0, 1.0};
     emitter.lifetime = {0.5, 0.2};
     emitter.radius = {0.02, 0.015};
@@ -448,7 +449,7 @@ TEST_P(EveryAnswer, IsTheSameInAllBitsForAnyNumberOfThreadsAndWithoutCulling) {
     }
 }
 
-/// One particle stays. It is born before, between and after others that are removed.
+/// One particle stays alive. It is born before, between and after particles that are removed.
 TEST_P(EveryResponse, LeavesAParticleUnchangedWhenOthersAreRemoved) {
     const auto end = [&](int others) {
         SimulationSetup setup = marbles({GetParam()});
@@ -456,8 +457,10 @@ TEST_P(EveryResponse, LeavesAParticleUnchangedWhenOthersAreRemoved) {
         setup.options.duration = 0.8;
         for (int i = 0; i < others; ++i) {
             setup.particles.emplace_back();
-            setup.particles.back().position = {0.9, 0, 0.05 * (i % 7)};  // inside the ring, on its other side
-            setup.particles.back().lifetime = 0.2 + 0.02 * i;            // while the other one bounces on the ring
+            setup.particles.back().position = {0.9, 0, 0.05 * (i % 7)};  // inside the ring, on the opposite side of the
+                                                                         // first particle
+            setup.particles.back().lifetime = 0.2 + 0.02 * i;            // ends while the first particle bounces on the
+                                                                         // ring
         }
         setup.particles.emplace_back();
         setup.particles.back().position = {0.8, 0.1, 1.0};

@@ -1,5 +1,5 @@
-// Tests gravity and charges in whole runs: orbits against closed forms, momentum and energy with and without walls, and
-// orders of convergence.
+// Tests gravity and charges in whole runs. Orbits are compared with closed forms. Other tests check momentum and energy
+// with and without walls, and orders of convergence.
 #include "ricochet/dynamics/particles_force.h"
 
 #include <gtest/gtest.h>
@@ -36,8 +36,8 @@ using testing::setup_of;
 // ---- two bodies
 // ------------------------------------------------------------------------------------------------------
 
-/// Returns the position of the second body relative to the first, at a time after pericentre. The orbit has semi-axis 1
-/// and G (m1 + m2) = 1.
+/// Returns the position of the second body relative to the first, at a time after pericentre. The orbit has semi-major
+/// axis 1, and G (m1 + m2) = 1.
 Vec3 kepler_position(double time) {
     double anomaly = time;
     for (int k = 0; k < 50; ++k) {
@@ -158,7 +158,8 @@ TEST(CoulombForce, KeepsOrderTwoWithBouncesAndThreeWithRk4) {
     }
 }
 
-// A charge falls from rest towards a fixed charge behind a wall, bounces and returns to its start.
+// A charge falls from rest towards a fixed charge behind a wall. It bounces off the wall and returns to its start
+// position.
 TEST(CoulombForce, ReturnsAChargeFromAWallAtTheTimeOfTheClosedForm) {
     constexpr double kStart = 1.0;
     constexpr double kWall = 0.3;
@@ -182,7 +183,7 @@ TEST(CoulombForce, ReturnsAChargeFromAWallAtTheTimeOfTheClosedForm) {
     EXPECT_LT(error_of(IntegratorKind::rk4, 5000.5), 4e-8);
 }
 
-// A floor without friction takes no momentum along it.
+// A frictionless floor exerts no force along its surface.
 TEST(CoulombForce, ConservesMomentumAlongAFloor) {
     for (const IntegratorKind kind :
          {IntegratorKind::velocity_verlet, IntegratorKind::midpoint, IntegratorKind::rk4,

@@ -1,13 +1,16 @@
 // A sphere in a groove rolls and slips as in the closed form, for any walls, slope and time step.
 //
-// The groove runs down along d. Its walls have inclinations A and B across it. Their normal forces are N1 = c sin B /
-// sin(A + B) and N2 = c sin A / sin(A + B), where c is the component of gravity into the groove. Friction t_i along d
-// changes the speed and the slips u_i by
+// The groove descends along d. Its walls have the inclinations A and B across the groove. The component of gravity into
+// the groove is c, and the component along the groove is s. The normal forces on the walls are
 //
-//     v' = s + t1 + t2,    u_i' = v' + 5/2 (t_i + cos(A + B) t_j),
+//     N1 = c sin B / sin(A + B),    N2 = c sin A / sin(A + B).
 //
-// with s: gravity along the groove, and |t_i| <= mu N_i, against the slip. t_i keeps u_i at zero if it can. Between
-// changes every motion is a parabola.
+// The frictions t_i along d change the speed v and the slips u_i:
+//
+//     v' = s + t1 + t2,    u_i' = v' + 5/2 (t_i + cos(A + B) t_j).
+//
+// Friction acts against the slip, and |t_i| <= mu N_i. It keeps a slip at zero if this bound allows it. Between changes
+// of the frictions, every motion is a parabola.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +29,7 @@ namespace RICOCHET_FILE {
 constexpr double kG = kStandardGravity;
 constexpr double kSphereRadius = 0.1;
 
-/// Inclinations of the walls across the groove and of the groove along its direction, in radians.
+/// Inclinations in radians: of both walls across the groove, and of the groove along its direction.
 struct Groove {
     double a, b, slope;
     [[nodiscard]] double along() const { return kG * std::sin(slope); }
@@ -34,7 +37,7 @@ struct Groove {
         const double c = kG * std::cos(slope) / std::sin(a + b);
         return {c * std::sin(b), c * std::sin(a)};
     }
-    /// Returns the smallest friction at which both walls make the sphere roll from rest.
+    /// Returns the smallest friction coefficient at which the sphere rolls on both walls from rest.
     [[nodiscard]] double rolling_limit() const {
         const double half = std::cos(0.5 * (a + b));
         const double share = 0.4 / (half * half);
@@ -43,7 +46,7 @@ struct Groove {
     }
 };
 
-/// Closed form of the speed and the slips between changes.
+/// Closed form of the speed and the slips. The motion is integrated from one change of a slip to the next.
 class GrooveReference {
 public:
     GrooveReference(const Groove& groove, double friction, double speed, const std::array<double, 2>& slip)
@@ -74,7 +77,8 @@ private:
     static void advance(double& slip, double rate, double h) {
         const double before = slip;
         slip += h * rate;
-        // The slip that ended the interval is zero to rounding. Other slips are not close to zero.
+        // If this slip ended the interval, its value is a rounding error and becomes exactly 0. Other slips are not
+        // close to zero.
         if (std::fabs(slip) < 1e-12 * std::max(std::fabs(before), std::fabs(h * rate))) slip = 0.0;
     }
     [[nodiscard]] std::array<double, 2> slip_rates(const std::array<double, 2>& t) const {
@@ -82,11 +86,12 @@ private:
         const double rate = groove_.along() + t[0] + t[1];
         std::array<double, 2> rates{rate + 2.5 * (t[0] + c * t[1]), rate + 2.5 * (t[1] + c * t[0])};
         for (double& r : rates) {
-            if (std::fabs(r) < 1e-13 * kG) r = 0.0;  // the rounding of a slip that friction keeps at zero
+            if (std::fabs(r) < 1e-13 * kG) r = 0.0;  // rounding error of the rate of a slip that friction keeps at zero
         }
         return rates;
     }
-    /// Solves by projected Gauss-Seidel for two numbers. The problem is positive definite, so it converges to rounding.
+    /// Computes both frictions by projected Gauss-Seidel. The problem is positive definite, so the sweeps converge to
+    /// rounding.
     [[nodiscard]] std::array<double, 2> friction() const {
         std::array<double, 2> t{};
         for (int sweep = 0; sweep < 200'000; ++sweep) {
@@ -111,8 +116,8 @@ private:
     std::array<double, 2> slip_;
 };
 
-/// Frame of the groove in space: down along d, up along u, across along s. It is rotated about the vertical, so that
-/// nothing is aligned with the axes.
+/// Unit vectors of the groove in world coordinates: d downhill along the groove, u perpendicular to it and up, s across
+/// it. They are rotated about the vertical, so that no vector is aligned with the axes.
 struct GrooveFrame {
     explicit GrooveFrame(double slope) {
         const double yaw = 0.3;
@@ -134,8 +139,8 @@ std::vector<ColliderDescription> walls_of_planes(const Groove& g, const GrooveFr
     return {plane_collider({}, n[0]), plane_collider({}, n[1])};
 }
 
-/// Returns both walls as one mesh of strips along the groove, 3 m wide. A sphere of 0.1 m touches them within 1.2 m of
-/// the bottom.
+/// Returns both walls as one mesh of strips along the groove, 3 m wide. A sphere of 0.1 m touches the walls within 1.2
+/// m of the bottom.
 std::vector<ColliderDescription> walls_of_triangles(const Groove& g, const GrooveFrame& frame) {
     constexpr int kCells = 12;
     const auto n = wall_normals(g, frame);
@@ -156,7 +161,7 @@ std::vector<ColliderDescription> walls_of_triangles(const Groove& g, const Groov
 
 using MakeWalls = std::vector<ColliderDescription> (*)(const Groove&, const GrooveFrame&);
 
-/// Returns a sphere in a groove with its centre at the position that touches both walls, up to rounding.
+/// Returns a sphere in a groove. The centre is at the position at which the sphere touches both walls, up to rounding.
 ContactScene in_groove(const Groove& g, const GrooveFrame& frame, std::vector<ColliderDescription> walls,
                        double friction, double time_step) {
     const double half = 0.5 * (g.a + g.b);
@@ -186,7 +191,8 @@ void for_every_groove(Visit&& visit) {
     }
 }
 
-/// Required bound, relative to the distance. The motion is parabolic, so any time step has only rounding errors.
+/// Required bound on the error of the distance, relative to the distance. The motion is parabolic, so only rounding
+/// errors occur for any time step.
 constexpr double kBound = 1e-9;
 
 void expect_closed_form_from_rest(const Groove& g, MakeWalls make_walls, double friction) {
@@ -222,8 +228,8 @@ TEST_P(GrooveGrid, LetsSpheresSlipFromRestIfAWallDoesNotStick) {
     });
 }
 
-// The sphere is thrown along the groove without spin, or with the spin of rolling in the opposite direction. The walls
-// start to stick one after the other.
+// The sphere is thrown along the groove without spin, or with the spin of rolling in the opposite direction. The slips
+// on the two walls end one after the other.
 TEST_P(GrooveGrid, SlowsSpheresUntilTheyRoll) {
     for_every_groove([&](const Groove& g) {
         const GrooveFrame frame(g.slope);
@@ -263,15 +269,14 @@ TEST_P(GrooveGrid, KeepsSpheresRollingOnLevelGround) {
     }
 }
 
-// Compares the reference itself with the known formula for equal walls.
+// Compares the reference with the known formula for walls of equal inclination.
 TEST(GrooveReference, IsTheKnownClosedFormBetweenEqualWalls) {
     for (const double degrees : {5.0, 45.0, 85.0}) {
         const Groove g{radians(degrees), radians(degrees), radians(20.0)};
         const double cosine = std::cos(g.a);
         const double rolling = kG * std::sin(g.slope) / (1.0 + 0.4 / (cosine * cosine));
         const double slipping = kG * std::sin(g.slope) - 0.5 * g.rolling_limit() * kG * std::cos(g.slope) / cosine;
-        // Bounds: the rounding of a few operations on about 4 m, and the convergence limit of the sweeps for both
-        // frictions.
+        // The bounds cover the rounding of a few operations on about 4 m, and the convergence limit of the sweeps.
         EXPECT_NEAR(GrooveReference(g, 2.0 * g.rolling_limit(), 0.0, {}).distance_after(1.0), 0.5 * rolling, 1e-12);
         EXPECT_NEAR(GrooveReference(g, 0.5 * g.rolling_limit(), 0.0, {}).distance_after(1.0), 0.5 * slipping, 1e-12);
     }

@@ -16,7 +16,7 @@ TriangleMesh placed(TriangleMesh mesh, const Placement& placement) {
     return mesh;
 }
 
-/// Returns the mesh rotated, so that nothing is aligned with the axes.
+/// Returns the rotated mesh. Its edges and faces are then not aligned with the axes.
 TriangleMesh turned(TriangleMesh mesh) { return placed(std::move(mesh), {{}, {1, 2, 3}, 40.0, {1, 1, 1}}); }
 
 /// Returns a star-shaped body with deep, sharp valleys.

@@ -1,4 +1,5 @@
-/// \file Meshes that particles must never cross: generated ones, and real ones if available.
+/// \file Meshes that particles must never cross. Some are generated. Others are real meshes, used if they are
+/// available.
 #pragma once
 
 #include <optional>
@@ -16,15 +17,15 @@ struct NamedMesh {
     TriangleMesh mesh;
 };
 
-/// Returns meshes that are always available, all closed: a rotated box, a sphere, a sphere flattened to slender
-/// triangles, a spiky star, the space between two spheres, and a wedge of 0.01 rad.
+/// Returns the generated meshes, which are closed and always available. These are a rotated box, a sphere, a spiky star
+/// and the space between two spheres. A flattened sphere has slender triangles, and a wedge has an angle of 0.01 rad.
 [[nodiscard]] std::vector<NamedMesh> made_meshes();
 
-/// Returns a mesh of made_meshes(), or a real one by its file name (see shared_meshes.h), or nothing if it does not
-/// exist.
+/// Returns a mesh of made_meshes() by its name, or a real mesh by its file name (see shared_meshes.h). Returns nothing
+/// if the mesh does not exist.
 [[nodiscard]] std::optional<NamedMesh> mesh_by_name(const std::string& name);
 
-/// Placement in the world that is difficult for floating-point numbers.
+/// A placement that is difficult for floating-point arithmetic.
 struct HardPlacement {
     std::string name;
     Placement placement;

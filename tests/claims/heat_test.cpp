@@ -1,5 +1,5 @@
-// The energy that surfaces take from a particle heats it, to the last joule. Tests cover single impacts, friction in
-// contact, moving belts and walls, and simultaneous cooling.
+// All kinetic energy that a particle loses at surfaces becomes heat of the particle. Tests cover single impacts,
+// friction in contact, moving belts and walls, and simultaneous cooling.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ HeatSettings all_of_it() {
     return heat;
 }
 
-/// Returns a setup with a floor and heat from surfaces alone.
+/// Returns a setup with a floor in which only impacts and friction heat particles.
 SimulationSetup on_a_floor(double time_step, double duration, const Material& material) {
     SimulationSetup setup = setup_of(time_step, duration, material, {0, 0, -kG});
     setup.colliders.push_back(plane_collider({0, 0, 0}, {0, 0, 1}));
@@ -78,8 +78,8 @@ TEST(HeatOfImpacts, EqualsTheLossOfRestitutionInEachBounceAtAnyTimeStep) {
 }
 
 TEST(HeatOfImpacts, IsSharedBetweenRestitutionAndFrictionByTheirFractions) {
-    // A point hits at (2, 0, -3) m/s. The normal part loses 9 (1 - e^2) / 2. Friction takes the whole slip or mu (1 +
-    // e) 3.
+    // A point hits the floor at (2, 0, -3) m/s. The normal motion loses the energy 9 (1 - e^2) / 2 per unit mass.
+    // Friction removes the whole tangential velocity, or mu (1 + e) 3 m/s of it.
     const double e = 0.5;
     const double mu = 0.2;
     const double slip = 2.0 - mu * (1.0 + e) * 3.0;
@@ -97,8 +97,8 @@ TEST(HeatOfImpacts, IsSharedBetweenRestitutionAndFrictionByTheirFractions) {
     }
 }
 
-// The work is mu m g s with s = v^2 / (2 mu g). It is all of the kinetic energy for any step, and half of it after half
-// the distance.
+// The work of friction is mu m g s, with the sliding distance s = v^2 / (2 mu g). It equals the whole kinetic energy
+// for any time step. After half the distance, it equals half of the kinetic energy.
 TEST(HeatOfFriction, IsTheKineticEnergyOfAParticleThatSlidesToRest) {
     const double mu = 0.3;
     const double v = 2.0;
@@ -118,7 +118,7 @@ TEST(HeatOfFriction, IsTheKineticEnergyOfAParticleThatSlidesToRest) {
 }
 
 TEST(HeatOfFriction, EqualsTheLossOfASlidingBallUntilItRolls) {
-    // The ball rolls at 5/7 v, with 5/7 of the energy.
+    // In the end the ball rolls at 5/7 v, with 5/7 of its initial energy.
     SimulationSetup setup = on_a_floor(0.01, 1.5, {"floor", 0.5, 0.2});
     setup.particles.push_back(particle_of({0, 0, 0.1}, {2, 0, 0}, 0.1));
     Simulation simulation(std::move(setup));
@@ -127,7 +127,8 @@ TEST(HeatOfFriction, EqualsTheLossOfASlidingBallUntilItRolls) {
     EXPECT_NEAR(heat_of(simulation), 2.0 * 2.0 / 7.0, 1e-6);
 }
 
-// The belt does m u^2 of work, half of which becomes the particle's kinetic energy.
+// The belt does the work m u^2. Half of this work becomes the particle's kinetic energy, and the other half becomes
+// heat.
 TEST(HeatOfFriction, OnABeltIsHalfOfItsWork) {
     Material belt{"belt", 0.5, 0.4};
     belt.motion.velocity = {1.5, 0, 0};
@@ -140,7 +141,7 @@ TEST(HeatOfFriction, OnABeltIsHalfOfItsWork) {
     EXPECT_NEAR(simulation.collider_totals()[0].work, -1.5 * 1.5, 1e-6);
 }
 
-/// Returns balls of several radii and spins thrown into a box whose walls dissipate energy.
+/// Returns balls with several radii and spins that are thrown into a box whose walls dissipate energy.
 SimulationSetup thrown_balls(double duration) {
     SimulationSetup setup = on_a_floor(0.005, duration, {"wall", 0.6, 0.25});
     setup.colliders.push_back(plane_collider({-1, 0, 0}, {1, 0, 0}));

@@ -1,5 +1,5 @@
-// A ball on a dynamic body, from much lighter to much heavier than the body. It comes to rest in equilibrium, no energy
-// is created, and steps are split into few substeps, for any resting speed.
+// A ball on a dynamic body. The ball can be much lighter or much heavier than the body. Ball and body come to rest in
+// equilibrium. No energy is created, and steps are split into few substeps, for any resting speed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
 
-/// Body of 1 kg with its load.
+/// A dynamic body of 1 kg with a ball as its load.
 struct Pushed {
     BodyDescription body;
     Particle ball;
@@ -33,7 +33,7 @@ Simulation simulation_of(const Pushed& pushed) {
     frame.is_driven = true;
     SimulationSetup setup = setup_of({frame}, {{"plate", PlaneShape{}, 0, "body"}}, pushed.step, pushed.duration);
     setup.options.resting_speed = pushed.resting_speed;
-    setup.options.bounce_budget = 10000;  // each small rebound counts without a resting speed
+    setup.options.bounce_budget = 10000;  // without a resting speed, each small rebound counts against the budget
     setup.bodies = {pushed.body};
     setup.forces.push_back(make_gravity({0, 0, -pushed.gravity}));
     setup.particles = {pushed.ball};
@@ -57,7 +57,7 @@ Particle ball_of(double mass, const Vec3& position, const Vec3& velocity = {}) {
     return ball;
 }
 
-/// Returns the energy of the ball and the body with its spring, in J.
+/// Returns the energy of the ball, the body and its spring, in J.
 double energy_of(const Simulation& simulation, const Pushed& pushed) {
     const Particles& all = simulation.particles();
     const BodyState body = simulation.bodies()[0];
@@ -68,9 +68,9 @@ double energy_of(const Simulation& simulation, const Pushed& pushed) {
 }
 
 struct Course {
-    double gained = 0.0;  // largest rise above an earlier energy, in J
+    double gained = 0.0;  // largest increase of the energy above an earlier value, in J
     double coordinate = 0.0;
-    double parts = 0.0;  // per step
+    double parts = 0.0;  // substeps per step
     double lost = 0.0;   // unsimulated time, in s
 };
 
@@ -123,10 +123,11 @@ TEST(ATrayOnASpring, ComesToRestUnderABallOfAnyMass) {
     });
 }
 
-// The ball sticks by friction, 0.5 m from the axis.
+// Friction keeps the ball in place on the plate, 0.5 m from the axis.
 TEST(APlateOnAHinge, ComesToRestUnderABallOfAnyMass) {
     for_all_balls([](double ratio, double resting_speed, double restitution) {
-        if (ratio > 10.0 && resting_speed == 0.0 && restitution > 0.0) return;  // takes long; the tray covers this case
+        // This case takes long, and the test of the tray covers it.
+        if (ratio > 10.0 && resting_speed == 0.0 && restitution > 0.0) return;
         Pushed pushed;
         pushed.body = body_of(JointKind::hinge, {0, -1, 0});
         constexpr double kArm = 0.5;
@@ -159,8 +160,9 @@ Pushed door_and_ball(double mass, double restitution) {
     return pushed;
 }
 
-// A particle slides along a light door towards its hinge, where the effective mass of the door grows. It opens the door
-// within a single step. A gain of energy that was lost before is limited to the order of the method.
+// A particle slides along a light door towards the hinge. The effective mass of the door grows on the way. The particle
+// opens the door within a single step. The energy may rise again after a loss, but only by the error of the integration
+// method.
 TEST(ALightDoor, IsPushedOpenByAHeavyBallWithoutEnergyGain) {
     for (const auto& [mass, bound] : {std::pair{1.0, 5e-3}, {10.0, 2e-3}, {100.0, 5e-5}}) {
         for (const double restitution : {0.0, 0.5}) {
@@ -173,7 +175,8 @@ TEST(ALightDoor, IsPushedOpenByAHeavyBallWithoutEnergyGain) {
     }
 }
 
-// In a central impact of two bodies, each leaves with twice the velocity of the centre of mass minus its own velocity.
+// A central impact reverses the velocity of each body relative to the centre of mass, and multiplies it by the
+// restitution.
 TEST(AFreePlate, IsHitByAMuchHeavierBallAsInClosedForm) {
     for (const double mass : {100.0, 1e4}) {
         for (const double restitution : {1.0, 0.5, 0.0}) {
@@ -195,7 +198,7 @@ TEST(AFreePlate, IsHitByAMuchHeavierBallAsInClosedForm) {
     }
 }
 
-// Without losses the energy is conserved, up to the effect of the substep after each hit.
+// Without losses, energy is conserved up to the error of the substep after each impact.
 TEST(ALightDoor, ConservesTheEnergyOfAnElasticHeavyBall) {
     for (const double mass : {1.0, 10.0, 100.0}) {
         SCOPED_TRACE(std::to_string(mass) + " kg");

@@ -1,5 +1,6 @@
-// A particle that slides or rolls on one surface and hits another rebounds with the restitution of the surface it hits.
-// The rotation, position, scale and mirroring of the scene and the time step must not matter.
+// A particle slides or rolls on one surface and hits another surface. It rebounds with the restitution of the surface
+// that it hits. The result must not depend on the time step, nor on the rotation, position, scale and mirroring of the
+// scene.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,7 +20,7 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-/// Transformation of a scene: rotated, possibly mirrored, scaled and shifted.
+/// A transformation of a scene: rotation, scale and shift, with or without mirroring.
 struct Copy {
     Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
     double scale = 1.0;
@@ -47,19 +48,20 @@ enum class Kind : std::uint8_t { slope, box, groove, pipe, seams, moving, thresh
 constexpr std::array kKinds{Kind::slope, Kind::box,    Kind::groove,   Kind::pipe,
                             Kind::seams, Kind::moving, Kind::threshold};
 
-/// Particle that slides or rolls along x on its support and is pulled down a slope into a wall. Collider 0 is the wall.
+/// A particle that slides or rolls along x on its support. Gravity pulls it down a slope into a wall. Collider 0 is the
+/// wall.
 struct Course {
     Kind kind = Kind::slope;
-    double restitution = 0.7;  ///< of the wall
-    double of_support = 0.3;   ///< of all others
+    double restitution = 0.7;  ///< restitution of the wall
+    double of_support = 0.3;   ///< restitution of all other surfaces
     double friction = 0.1;
     double radius = 0.05;
     double slope = 0.3;  ///< in rad
-    double lean = 0.0;   ///< inclination of the wall in rad; above 0 it faces up
+    double lean = 0.0;   ///< inclination of the wall, in rad; a wall with a positive inclination faces up
     double speed = 1.0;  ///< initial speed, in m/s
-    /// inclination of both sides of the groove, and the start angle in the pipe from its bottom, in rad
+    /// For grooves: inclination of both sides. For the pipe: start angle from the bottom. In rad.
     double opening = 0.8;
-    Vec3 carried;  ///< velocity of wall and floor if they move, in m/s
+    Vec3 carried;  ///< velocity of the wall and the floor, in m/s
     double time_step = 0.01;
 };
 
@@ -82,7 +84,7 @@ Course random_course(Kind kind, RandomSequence& random) {
 
 Vec3 wall_normal(const Course& course) { return {-std::cos(course.lean), 0.0, std::sin(course.lean)}; }
 
-/// Returns the support of the particle and its start position.
+/// Returns the colliders that support the particle, and its start position.
 std::pair<std::vector<ColliderDescription>, Vec3> support_of(const Course& course, const Copy& copy) {
     const Vec3 up = copy.direction({0, 0, 1});
     const double r = course.radius;
@@ -107,7 +109,8 @@ std::pair<std::vector<ColliderDescription>, Vec3> support_of(const Course& cours
     if (course.kind == Kind::seams) {
         return {
             {mesh_collider(copy.mesh(floor_mesh(4.0, 5)), {}, "floor"), plane_collider(copy.point({}), up, "below")},
-            // The start is slightly off the plane, because rounding could put a point between both surfaces.
+            // The start position is slightly above the plane, because rounding could place a point between both
+            // surfaces.
             {0, 0.13, r + 1e-9}};
     }
     return {{plane_collider(copy.point({}), up, "floor")}, {0, 0, r}};
@@ -143,7 +146,7 @@ SimulationSetup setup_on(const Course& course, const Copy& copy, double time_ste
     return setup;
 }
 
-/// First impact on the wall, with all surface contacts at its time.
+/// The first impact on the wall, with all surface contacts at the same time.
 struct WallImpact {
     double time = 0.0;
     Vec3 before;
@@ -184,7 +187,8 @@ void expect_rebound_of_wall(const Course& course, const Copy& copy) {
         EXPECT_NEAR(dot(impact->after - carried, n), course.restitution * approach, 1e-9 * speed);
         found[part == 1.0 ? 0 : 1] = impact;
     }
-    // Contact on planes is exact. Along a pipe it is of fourth order, here with steps up to a sixteenth of a swing.
+    // Contact on planes is integrated exactly. Contact along a pipe is integrated with fourth order, here in steps of
+    // at most a sixteenth of a swing.
     const double agree = course.kind == Kind::pipe ? 1e-3 : 1e-8;
     EXPECT_NEAR(found[0]->time, found[1]->time, agree);
     EXPECT_LT(length(found[0]->after - found[1]->after), agree * (length(found[0]->before) + length(carried)));
@@ -226,7 +230,7 @@ TEST(AnImpactInContact, ReboundsEvenIfTheApproachIsABillionthOfTheSpeed) {
     EXPECT_NEAR(flown.z, 0.5e-9, 1e-15);
 }
 
-// Three faces: a sphere on the floor beside a side wall hits the end wall.
+// A sphere that touches the floor and a side wall hits the end wall.
 TEST(AnImpactInContact, HasTheRestitutionOfTheThirdFaceOfACorner) {
     for (const double press : {0.0, 2.0}) {
         ContactScene scene;
@@ -241,7 +245,8 @@ TEST(AnImpactInContact, HasTheRestitutionOfTheThirdFaceOfACorner) {
     }
 }
 
-// Free flight reaches two surfaces at once and approaches both, so the smaller restitution counts.
+// A particle in free flight reaches two surfaces at the same time and approaches both. The smaller restitution then
+// applies.
 TEST(AnImpactOutOfFreeFlight, OnTwoSurfacesHasTheSmallerRestitution) {
     const auto floor = plane_collider({0, 0, -1}, {0, 0, 1}, "floor");
     const auto wall = plane_collider({1.125, 0, 0}, {-1, 0, 0}, "wall");

@@ -1,5 +1,5 @@
-// Bodies much lighter than the spheres that close on them from several sides. No planned load is consistent there, and
-// no energy is created.
+// Heavy spheres approach much lighter bodies from several sides. No planned load on such a body is consistent. The
+// tests check that no energy is created.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -71,7 +71,7 @@ TEST(ALightBodyAmongHeavySpheres, GainsNoEnergy) {
                 least = std::min(least, energy);
             }
             EXPECT_LT(gained, 0.01 * begin);
-            // Spheres that jam a body may overlap it slightly, but none passes through it.
+            // Spheres that jam a body may overlap it slightly, but no sphere passes through it.
             for (const Violation& violation : simulation.violations()) {
                 EXPECT_EQ(violation.kind, ViolationKind::overlap);
             }
@@ -79,7 +79,8 @@ TEST(ALightBodyAmongHeavySpheres, GainsNoEnergy) {
     }
 }
 
-// With these seeds, the planned load on the body grew a hundredfold from substep to substep, to 1e12 N.
+// With these seeds, an earlier version let the planned load on the body grow a hundredfold from substep to substep, up
+// to 1e12 N.
 TEST(ALightBodyAmongHeavySpheres, GainsNoEnergyFromAPlannedLoad) {
     for (const std::uint64_t seed : {12U, 24U, 38U}) {
         SCOPED_TRACE("seed " + std::to_string(seed));

@@ -1,4 +1,4 @@
-// Contact with surfaces of several frames that jam a particle repeatedly in one step. The cost of that is bounded.
+// Surfaces in several frames jam a particle repeatedly in one step. The number of impacts in the step is bounded.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,8 +13,8 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-/// Returns a particle on a floor beside a moving wall, with high friction. A slanted roof, which may turn, comes down
-/// on it.
+/// Returns a particle on a floor beside a moving wall, with high friction. A slanted roof, which may turn, moves down
+/// onto the particle.
 SimulationSetup closing_corner(std::uint64_t seed) {
     RandomSequence random(seed, 0, 0);
     const auto between = [&](double least, double most) { return least + (most - least) * random.uniform(); };
@@ -42,7 +42,7 @@ SimulationSetup closing_corner(std::uint64_t seed) {
 // Without a limit, these cases take up to about 130 impacts in one step.
 TEST(JammedContact, EndsAfter64ImpactsInAStepAndTheRestCountsAsUnsimulated) {
     constexpr std::uint32_t kMostTurns = 64;
-    constexpr std::uint32_t kFewMore = 2;  // impacts in flight between
+    constexpr std::uint32_t kFewMore = 2;  // impacts of free flight between the jams
     std::uint64_t jammed = 0;
     for (const std::uint64_t seed : {829U, 1057U, 1265U, 1369U}) {
         SCOPED_TRACE(seed);

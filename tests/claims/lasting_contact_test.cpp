@@ -1,4 +1,5 @@
-// Persistent sliding, rolling and rest: over seams, in bowls, in grooves, and with friction that changes its direction.
+// Persistent sliding, rolling and resting contact: over seams, in bowls, in grooves, and with friction that changes its
+// direction.
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <utility>
@@ -39,8 +40,8 @@ TEST(SlidingOverSeams, CostsAFewContactsPerSeamAndNoSpeed) {
     EXPECT_LT(bounces, 1500U);  // it crosses about 330 seams
 }
 
-/// Returns half a period of a swing that starts at rest beside the lowest point of a bowl, from the sign of the
-/// velocity.
+/// Returns half a period of a swing that starts at rest beside the lowest point of a bowl. The half period ends when
+/// the velocity changes its sign.
 double half_period(Course& course, MovingParticle particle) {
     constexpr double kStep = 1.0 / 1024;
     for (int k = 1; k < 4096; ++k) {
@@ -50,7 +51,8 @@ double half_period(Course& course, MovingParticle particle) {
     return 0.0;
 }
 
-// Pendulums: a sliding point has the period 2 pi sqrt(R / g), a rolling solid sphere 2 pi sqrt(7/5 (R - r) / g).
+// A sliding point swings with the period 2 pi sqrt(R / g). A rolling solid sphere swings with the period 2 pi sqrt(7/5
+// (R - r) / g).
 TEST(ABallFromInside, IsABowlInWhichPointsAndMarblesSwingLikePendulums) {
     const double angle = 0.05;
     const auto beside = [&](double r) { return (1.0 - r) * Vec3{std::sin(angle), 0, -std::cos(angle)}; };
@@ -73,8 +75,8 @@ TEST(ABallFromInside, KeepsTheSpeedOfForceFreeSlidingAroundIt) {
     EXPECT_NEAR(length(point.state.velocity), speed, 1e-3);
 }
 
-// Sliding without friction or loss: a hundred swings from an angle, steps of 0.02 s, energy relative to the energy of
-// the swing.
+// A point slides without friction for a hundred swings, in steps of 0.02 s. The bounds limit the energy error relative
+// to the energy of the swing.
 TEST(ABallFromInside, ConservesTheEnergyOfAHundredSwings) {
     for (const auto& [angle, bound] : {std::pair{1.0, 1e-10}, std::pair{0.1, 5e-10}}) {
         Course course({{"ball", BallShape{1.0, {}}, 0}}, {"", 0.0, 0.0}, {0, 0, -kG});
@@ -89,8 +91,8 @@ TEST(ABallFromInside, ConservesTheEnergyOfAHundredSwings) {
     }
 }
 
-// The walls have an inclination of A, and the groove descends at 20 degrees. A sphere rolls with g sin / (1 + 0.4 /
-// cos^2 A).
+// The walls have the inclination A, and the groove descends at 20 degrees. A sphere rolls down with the acceleration g
+// sin(20 degrees) / (1 + 0.4 / cos^2 A).
 TEST(AGroove, LetsASphereRollDownAsInClosedForm) {
     const double slope = 20.0 * kPi / 180.0;
     const auto tilted = [&](const Vec3& n) {
@@ -119,7 +121,7 @@ TEST(AMarbleOnALargeBall, LosesNoTimeOnAnyPath) {
     for (int k = 0; k < 60; ++k) ASSERT_EQ(course.move(marble, 1.0 / 60.0).unsimulated_time, 0.0) << k;
 }
 
-// Both sides of the groove press: friction is 2 * 10 / (2 cos 45) * 0.2.
+// Both sides of the groove press on the particle. The friction is 2 * 10 / (2 cos 45) * 0.2.
 TEST(AGroove, BrakesByTheSumOfItsNormalForces) {
     const std::vector<ColliderDescription> groove{plane_collider({0, 0, 0}, {1, 0, 1}),
                                                   plane_collider({0, 0, 0}, {-1, 0, 1})};
@@ -143,7 +145,7 @@ TEST(ACorner, IsSupportedByEachSurfaceInItsOwnDirection) {
     EXPECT_LT(length(given[1] - Vec3{15, 0, 0}), 1e-6);
 }
 
-// Friction turns with the motion, for any time step.
+// The direction of friction turns with the direction of motion. The result must not depend on the time step.
 TEST(TurningFriction, StopsASlideAtTheSamePositionForAnyTimeStep) {
     const auto end = [](double time_step) {
         Course course({plane_collider({0, 0, 0}, {0, 0, 1})}, {"", 0.0, 0.3}, {2, 0, -10});
@@ -168,7 +170,7 @@ TEST(RollingResistance, BrakesNoHarderThanFrictionAllows) {
     EXPECT_NEAR(sphere.state.velocity.x, 1.0 - 0.1, 1e-6);
 }
 
-// Slow bounces must end in rest, by any mechanism of energy loss, and exhaust no budget.
+// Slow bounces must end at rest for any mechanism of energy loss, and must not exhaust the bounce budget.
 TEST(SlowBounces, EndInRestEvenIfOnlyTheThresholdOrPartialAbsorptionTakesEnergy) {
     Material fading{"fading", 1.0, 0.0};
     fading.restitution_threshold = 1.0;

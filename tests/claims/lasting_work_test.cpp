@@ -1,4 +1,5 @@
-// Work and moment of persistent contact on moving colliders and belts, to second order in the time step.
+// Work and moment that persistent contact exerts on moving colliders and belts. They are exact to second order in the
+// time step.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +26,8 @@ End end_of(SimulationSetup setup) {
     return {simulation.collider_totals()[0], simulation.particles().spin[0]};
 }
 
-/// Expects that the error of a step of 5 ms is below `most`, and a quarter of the error of 10 ms unless it is rounding.
+/// Expects that the error with a step of 5 ms is below `most`. It must also be a quarter of the error with 10 ms,
+/// unless it is a rounding error.
 template <class ErrorOf>
 void expect_second_order(const ErrorOf& error_of, double most) {
     const double coarse = std::fabs(error_of(0.01));
@@ -34,8 +36,8 @@ void expect_second_order(const ErrorOf& error_of, double most) {
     EXPECT_LT(fine, 0.3 * coarse + 1e-9 * most);
 }
 
-// The particle moves from rest to rest, 1 m up and 0.3 m aside. The work is done against the weight, whatever happens
-// in between.
+// The particle moves from rest to rest, 1 m up and 0.3 m sideways. The total work is the work against the weight, for
+// any motion in between.
 TEST(WorkOfContactThatLasts, LiftsAPointAndABall) {
     for (const double radius : {0.0, 0.1}) {
         SCOPED_TRACE("radius " + std::to_string(radius));
@@ -54,9 +56,8 @@ TEST(WorkOfContactThatLasts, LiftsAPointAndABall) {
     }
 }
 
-// A ball lies on the bottom of a drum that starts to turn it, by a belt on its wall or by its own rotation. The ball
-// slips, is carried up, rolls, and swings. The drum gives it a moment about its axis, and 3 rad/s times that moment as
-// work.
+// A ball lies on the bottom of a drum. The wall of the drum moves, as a belt or by rotation of the drum. The ball
+// slips, is carried up, rolls and swings. The work of the drum must be 3 rad/s times the moment about the drum's axis.
 TEST(WorkOfContactThatLasts, EqualsTheMomentTimesTheRateInADrum) {
     constexpr double kTurning = 3.0;  // in rad/s
     for (const bool by_belt : {true, false}) {
@@ -81,8 +82,8 @@ TEST(WorkOfContactThatLasts, EqualsTheMomentTimesTheRateInADrum) {
                 return totals.work / (-kTurning * totals.moment.y) - 1.0;
             },
             1e-4);
-        // Friction alone turns the ball, with the lever arm of its radius. The drum receives as much with the lever arm
-        // of its own radius.
+        // Only friction turns the ball, and its lever arm is the ball's radius. The same friction acts on the drum,
+        // with the drum's radius as lever arm.
         expect_second_order(
             [&](double step) {
                 const End end = end_at(step);
@@ -92,9 +93,9 @@ TEST(WorkOfContactThatLasts, EqualsTheMomentTimesTheRateInADrum) {
     }
 }
 
-// A resistance is a moment that works on the rotation of a belt. A sphere that spins on the axis of a table does not
-// slide. The resistance drives the sphere with mu m g at the table's 5 rad/s, except during the microsecond of its
-// fall.
+// Resistance to spinning is a moment that does work if the surface rotates. A sphere that spins on the axis of a table
+// does not slide. The moment on the sphere is spinning_friction m g while the table turns at 5 rad/s. It is absent only
+// during the microsecond in which the sphere falls onto the table.
 TEST(WorkOfContactThatLasts, IncludesResistancesToSpinningAndRolling) {
     for (const bool by_belt : {true, false}) {
         SCOPED_TRACE(by_belt ? "belt" : "frame");

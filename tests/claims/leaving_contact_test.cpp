@@ -1,5 +1,5 @@
-// Spheres and points leave a ball, a table's edge and the top of a loop at the position given by energy, normal force
-// and the equation of slip.
+// Spheres and points leave a ball, a table's edge and the top of a loop. Energy, normal force and the equation of slip
+// determine the position at which they leave.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,8 +17,8 @@ namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
 
-/// Motion on a circle of radius rho about the highest point, by angle, speed and spin times radius, rolling or
-/// slipping.
+/// State of a motion on a circle of radius rho: angle from the highest point, speed, and spin times radius. The
+/// particle rolls or slips.
 using Descent = std::array<double, 3>;
 
 Descent descent_rates(const Descent& y, double rho, double friction, bool slips) {
@@ -28,8 +28,8 @@ Descent descent_rates(const Descent& y, double rho, double friction, bool slips)
     return {y[1] / rho, pull - brake, 2.5 * brake};
 }
 
-/// Returns the state when the normal force ends, or at the given time. Slip begins when rolling needs more than the
-/// available friction.
+/// Returns the state when the normal force becomes zero, or at the given time. Slip begins when rolling would need more
+/// friction than is available.
 Descent reference_descent(double angle, double speed, double rho, double friction, bool rolls,
                           std::optional<double> time = {}) {
     Descent y{angle, speed, rolls ? speed : 0.0};
@@ -49,12 +49,13 @@ Descent reference_descent(double angle, double speed, double rho, double frictio
     return y;
 }
 
-/// Returns the angle from the vertical at which the parabola of a flight has exactly the curvature of the circle about
-/// `center`: |v|^2 + (x - center) . g = 0. A motion on the circle leaves it there.
+/// Returns the angle from the vertical at which the parabola of a flight has the same curvature as the circle about
+/// `center`. The condition is |v|^2 + (x - center) . g = 0. A motion on the circle leaves the circle at this angle.
 double angle_of_leaving(const Particle& flying, const Vec3& center) {
     const Vec3 g{0, 0, -kG};
     const Vec3 x = flying.position - center;
-    // The function is 3/2 g . g t^2 + 3 v . g t + ... Newton's method finds the root next to t = 0.
+    // The left side of the condition is 3/2 g . g t^2 + 3 v . g t + ... Newton's method finds the root closest to t =
+    // 0.
     double t = 0.0;
     for (int k = 0; k < 50; ++k) {
         const Vec3 v = flying.velocity + t * g;
@@ -65,7 +66,7 @@ double angle_of_leaving(const Particle& flying, const Vec3& center) {
     return std::acos(r.z / length(r));
 }
 
-/// Returns the first state in free flight, at least `gap` off the circle of radius rho about `center`.
+/// Returns the first state in free flight, more than 1 mm off the circle of radius rho about `center`.
 Particle first_in_flight(const ContactScene& scene, const Vec3& center, double rho) {
     Particle found = scene.particle;
     bool flies = false;
@@ -124,11 +125,12 @@ TEST_P(OffABall, LeavesAtTheAngleOfTheClosedForm) {
 TEST_P(OffABall, LeavesAtThatAngleToSecondOrderInTheStep) {
     const double expected = expected_angle(GetParam());
     const double coarse = std::fabs(leaving_angle(0.02) - expected);
-    // At a quarter of the step the error is a sixteenth, or at the accuracy of the reference and the angle.
+    // At a quarter of the step, the error falls to a sixteenth. The limit 2e-5 is the accuracy of the reference and of
+    // the angle.
     EXPECT_LT(std::fabs(leaving_angle(0.005) - expected), std::max(coarse / 16.0 * 1.5, 2e-5));
 }
 
-// The support ends in the step in which the closed form leaves, neither before nor after.
+// The support must end in the same step in which the closed form leaves the ball.
 TEST_P(OffABall, IsSupportedUntilItLeaves) {
     const ContactScene scene = off_a_ball(GetParam(), 1e-3);
     Simulation simulation = simulation_of(scene);
@@ -175,16 +177,17 @@ double pivoted(bool as_mesh, double angle, double time_step, double time) {
     return std::atan2(end.position.x, end.position.z);
 }
 
-// The sphere turns about the edge with 7/5 r theta'' = g sin theta. In 0.32 s it turns from 0.05 rad to about 0.4 rad.
+// The rotation of the sphere about the edge obeys 7/5 r theta'' = g sin theta. In 0.32 s the angle grows from 0.05 rad
+// to about 0.4 rad.
 TEST_P(TableEdge, LetsASpherePivotAsItsEquationPredictsToSecondOrder) {
     const double time = 0.32;
     const double expected = reference_descent(0.05, 0.0, 0.1, 1000.0, true, time)[0];
     ASSERT_GT(expected, 0.2);
     ASSERT_LT(expected, 0.8);
     EXPECT_NEAR(pivoted(GetParam(), 0.05, 1e-3, time), expected, 1e-4);
-    // An arc lasts at most 0.02 s here.
+    // The longest step is 0.02 s, because a contact interval lasts at most 0.02 s here.
     const double coarse = std::fabs(pivoted(GetParam(), 0.05, 0.02, time) - expected);
-    // At half the step the error is a quarter, or at the accuracy of the reference.
+    // At half the step, the error falls to a quarter. The limit 1e-9 is the accuracy of the reference.
     EXPECT_LT(std::fabs(pivoted(GetParam(), 0.05, 0.01, time) - expected), std::max(coarse / 4.0 * 1.2, 1e-9));
 }
 
@@ -195,8 +198,8 @@ TEST_P(TableEdge, ReleasesItAtTenSeventeenths) {
     EXPECT_NEAR(angle, std::acos(10.0 / 17.0 * std::cos(0.05)), 1e-4);
 }
 
-// The sphere rolls over the table. The cylinder around the edge continues at the end of the table's plane, without any
-// loss.
+// The sphere rolls over the table and then over its edge. The contact continues from the plane to the edge without any
+// loss of energy or time.
 TEST_P(TableEdge, SupportsASphereThatRollsOverTheTable) {
     for (const double speed : {0.05, 0.3}) {
         ContactScene scene = on_the_edge(GetParam(), 0.0, 1e-3);
@@ -209,8 +212,8 @@ TEST_P(TableEdge, SupportsASphereThatRollsOverTheTable) {
     }
 }
 
-/// Returns a particle at the lowest point of a horizontal cylinder of 1 m along y. Its start speed has a factor on the
-/// kinetic energy that just carries it around.
+/// Returns a particle at the lowest point of a horizontal cylinder of radius 1 m along y. The start energy is `factor`
+/// times the kinetic energy with which the particle just completes the loop.
 ContactScene loop(double radius, double friction, double factor) {
     const double rho = 1.0 - radius;
     const double speed = std::sqrt(factor * (radius > 0.0 ? 27.0 / 7.0 : 5.0) * kG * rho);
@@ -247,9 +250,10 @@ INSTANTIATE_TEST_SUITE_P(Of, LoopInACylinder, ::testing::Values(Loop{"Sliding", 
 
 TEST_P(LoopInACylinder, IsCompletedATenthOfAPercentAboveTheLimitAndNotBelow) {
     const auto [name, radius, friction] = GetParam();
-    // The particle is in contact all around, to the rounding of positions of 1 m.
+    // The particle is in contact on the whole loop, up to the rounding of positions of about 1 m.
     EXPECT_LT(farthest_off(loop(radius, friction, 1.001)), 1e-12);
-    // Below the limit the parabola near the top is straighter than the loop by 0.5 % and separates by about 1e-4 m.
+    // Below the limit energy, the parabola near the top has a curvature 0.5 % smaller than the loop. The particle
+    // separates by about 1e-4 m.
     EXPECT_GT(farthest_off(loop(radius, friction, 0.999)), 1e-5);
 }
 

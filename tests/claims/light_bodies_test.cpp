@@ -13,8 +13,8 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-// A tray of 1 kg on a spring carries balls. It starts at the slack length of the spring, and swings about its
-// equilibrium with the balls, as one mass with them.
+// A tray of 1 kg on a spring carries balls. It starts at the rest length of the spring. Tray and balls swing about
+// their common equilibrium like a single mass.
 TEST(ATrayOnASpring, SwingsWithItsLoadAsOneMass) {
     for (const auto& [count, load] : {std::pair{10, 0.3}, {10, 1.0}, {10, 3.0}, {10, 10.0}, {1, 10.0}}) {
         for (const double step : {0.01, 0.002}) {
@@ -42,7 +42,8 @@ TEST(ATrayOnASpring, SwingsWithItsLoadAsOneMass) {
             }
             setup.materials = {{"steel", 0.0, 0.5}};
             Simulation simulation(std::move(setup));
-            // x'' = -g - 100 x - 4 x': about -g/100, at sqrt(96) rad/s, with decay 2/s.
+            // The coordinate obeys x'' = -g - 100 x - 4 x'. It swings about -g/100 at sqrt(96) rad/s and decays at the
+            // rate 2/s.
             const double turning = std::sqrt(96.0);
             double worst = 0.0;
             while (!simulation.finished()) {

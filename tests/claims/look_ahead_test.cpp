@@ -1,5 +1,5 @@
-// Particles that certainly hit nothing are not queried, and queried ones are moved in spatial order. Neither may change
-// a bit of any result.
+// The look-ahead makes no query for particles that certainly hit nothing, and queried particles are processed in
+// spatial order. Neither may change a bit of any result.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -21,7 +21,8 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// Long flights between small objects: most steps of most particles hit nothing. The case depends on its number only.
+/// A scene with long flights between small objects, in which most particles hit nothing in most steps. It depends only
+/// on the seed.
 class SparseCase {
 public:
     /// shift: offset of the whole scene from the origin, in m.
@@ -71,12 +72,12 @@ private:
         return particle;
     }
 
-    /// Returns a rough ball around everything, or scattered triangles with slivers among them.
+    /// Returns a rough ball around all particles, or scattered triangles that include slivers.
     std::shared_ptr<const TriangleMesh> mesh() {
         auto result = std::make_shared<TriangleMesh>();
         const std::size_t kind = pick(3);
         if (kind != 2) {
-            // Along parabolas one query of fine triangles covers less than a step.
+            // With fine triangles, one query along a parabola covers less than a step.
             *result = testing::sphere_mesh({}, 1.9, kind == 0 ? 3 : 5);
             for (Vec3& v : result->vertices) v = shift_ + (1.0 + 0.05 * random_.uniform()) * v;
             return result;
@@ -119,7 +120,8 @@ void expect_same_statistics(const Simulation& a, const Simulation& b) {
     EXPECT_EQ(a.kinetic_energy(), b.kinetic_energy());
 }
 
-/// Returns the number of impacts.
+/// Runs random scenes with and without look-ahead and spatial order, and expects equal results. Returns the number of
+/// impacts.
 std::uint64_t expect_the_same_with_look_ahead(const Vec3& shift) {
     std::uint64_t impacts = 0;
     for (int i = 0; i < test::scaled(150); ++i) {
@@ -152,8 +154,8 @@ TEST(LookAheadRuns, ChangesNothingFarFromTheOrigin) {
     EXPECT_GT(expect_the_same_with_look_ahead({3e6, -5e6, 1e6}), static_cast<std::uint64_t>(test::scaled(150)) * 20);
 }
 
-/// A sphere is born with its centre on a face that occurs twice, with both windings. It cannot leave to any side, and
-/// stays.
+/// A sphere is born with its centre on a face that occurs twice, with both windings. The sphere cannot leave to either
+/// side and stays there.
 TEST(LookAheadRuns, DoesNotFreeASphereThatCannotLeaveItsSurface) {
     const auto run = [](bool look_ahead) {
         SimulationSetup setup;
@@ -183,8 +185,8 @@ std::tuple<std::uint64_t, std::uint64_t, std::uint64_t> outcome_of(SimulationSet
     return {simulation.state_hash(), simulation.statistics().violations, simulation.statistics().contacts};
 }
 
-/// Far from the origin the sphere is so slow that the rounding of every step exceeds its distance from the wall. Its
-/// exact path leads away from the wall, but the stored positions lead through.
+/// The sphere is far from the origin and slow. The rounding of every step exceeds its distance from the wall. The exact
+/// path leads away from the wall, but the rounded positions would lead through the wall.
 TEST(LookAheadRuns, KeepsAWallToWhichRoundedStepsLeadBack) {
     constexpr double kFar = 5e6;
     constexpr double kUlp = 0x1p-30;
@@ -211,7 +213,7 @@ TEST(LookAheadRuns, KeepsAWallToWhichRoundedStepsLeadBack) {
     EXPECT_EQ(std::get<1>(run(true)), 0U);
 }
 
-// The error of heights above the plane exceeds the distance of the particle.
+// The rounding error of heights above the plane is larger than the particle's distance from the plane.
 TEST(LookAheadRuns, DoesNotTakeParticlesThroughAPlaneWhosePointIsFarAlongIt) {
     const auto run = [](bool look_ahead) {
         SimulationSetup setup;
@@ -242,7 +244,7 @@ void add_fountain(SimulationSetup& setup) {
     setup.emitters.push_back(std::move(fountain));
 }
 
-// Tests runs of one step, of several, and of more than the largest number of deferred steps. Some are cut short.
+// Calls advance() with one step, several steps, and more steps than can be deferred. Some calls are stopped early.
 TEST(Advance, GivesTheBitsOfSingleSteps) {
     int stretches = 0;
     for (int i = 0; i < test::scaled(150); ++i) {
@@ -307,8 +309,8 @@ TEST(Advance, MayBeCalledRecursively) {
     EXPECT_EQ(simulation.state_hash(), reference.state_hash());
 }
 
-/// The scene has enough triangles for a spatial order. It has so many particles that the tenth of them with impacts in
-/// a step suffices too.
+/// Returns a scene with enough triangles and particles for the spatial order. In a step, a tenth of the particles have
+/// impacts. This tenth is also large enough for the spatial order.
 SimulationSetup crowd() {
     SimulationSetup setup;
     setup.options.time_step = 0.05;

@@ -1,8 +1,9 @@
-// Nothing leaks in very many bounces. The independent verifier checks every step with random placements of meshes,
-// points and spheres, all integrators, materials with and without losses, and flows along both kinds of walls.
+// No particle leaks in very many bounces. Cases are random: placements of meshes, points and spheres, all integrators,
+// materials with and without losses, and flows along both kinds of walls. The independent verifier checks every step.
 //
-// A long run has about 10^8 bounces in all. RICOCHET_BOUNCES sets another number per mesh. RICOCHET_BOUNCE_LOG names a
-// file of counts from which a later run continues. RICOCHET_SEED=... selects a single case.
+// A long run has about 10^8 bounces in total. RICOCHET_BOUNCES sets the number of bounces for each mesh.
+// RICOCHET_BOUNCE_LOG names a log file of counts, from which a later run continues. RICOCHET_SEED=... selects a single
+// case.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,9 +34,9 @@ namespace RICOCHET_FILE {
 
 constexpr int kParticles = 100;
 constexpr int kSteps = 300;
-constexpr double kFast = 1e4;  // in m/s; beyond the speed of light a run ends
+constexpr double kFast = 1e4;  // in m/s; the program ends a run beyond the speed of light
 
-/// Tested cases of a mesh.
+/// Progress of the test with one mesh.
 struct Count {
     std::uint64_t next_seed = 0;
     std::uint64_t bounces = 0;
@@ -44,8 +45,8 @@ struct Count {
 
 const char* setting(const char* name) { return std::getenv(name); }  // NOLINT(concurrency-mt-unsafe): no code sets it
 
-/// Reads the log. Each line has a mesh, the next seed, and the totals of bounces and seconds. The last line of a mesh
-/// counts.
+/// Reads the progress from the log. Each line has a mesh, the next seed, and the total bounces and seconds. Only the
+/// last line of a mesh is used.
 Count count_from_log(const std::string& mesh) {
     Count count;
     if (setting("RICOCHET_BOUNCE_LOG") == nullptr) return count;
@@ -65,7 +66,7 @@ void write_to_log(const std::string& mesh, const Count& count) {
     file << mesh << ' ' << count.next_seed << ' ' << count.bounces << ' ' << count.seconds << '\n';
 }
 
-/// 13 meshes share the hundred million bounces.
+/// Returns the number of bounces for each mesh. In a long run, 13 meshes together have about a hundred million bounces.
 std::uint64_t bounces_wanted() {
     if (const char* wanted = setting("RICOCHET_BOUNCES")) return std::stoull(wanted);
     return static_cast<std::uint64_t>(test::scaled(2'000)) * static_cast<std::uint64_t>(test::case_factor(4'000));
@@ -92,7 +93,8 @@ public:
             {mesh_.name, MeshShape{std::make_shared<const TriangleMesh>(mesh_.mesh), placement_, "", {}}, 0});
         const double restitution = std::array{1.0, 1.0, 0.95, 0.6}[pick(4)];
         const bool has_gravity = chance(0.5);
-        // Endless bouncing in a crease, with friction and gravity, costs a thousand bounces per step.
+        // Without losses, friction and gravity make particles bounce endlessly in a crease, which costs a thousand
+        // bounces per step. Such cases get no friction.
         const bool rattles = has_gravity && restitution == 1.0;
         setup.materials = {{"", restitution, rattles || chance(0.5) ? 0.0 : 0.4 * random_.uniform()}};
         const double stride = (0.05 + 0.3 * random_.uniform()) * size_;
@@ -136,7 +138,7 @@ private:
         if (has_gravity) setup.forces.push_back(make_gravity(gravity));
     }
 
-    /// Adds particles inside the mesh and off its surface.
+    /// Adds particles inside the mesh that do not touch its surface.
     void add_particles(SimulationSetup& setup, double speed) {
         const CollisionQueries queries(setup.colliders);
         const AffineMap map = world_from_local(placement_);
@@ -162,10 +164,10 @@ private:
     RandomSequence random_;
     const NamedMesh& mesh_;
     Placement placement_;
-    double size_ = 0.0;  // of the mesh in the world, in m
+    double size_ = 0.0;  // diagonal of the mesh in the world, in m
 };
 
-/// Returns the number of bounces.
+/// Runs one case and checks it. Returns the number of bounces.
 std::uint64_t run_case(const NamedMesh& mesh, std::uint64_t seed) {
     SCOPED_TRACE(mesh.name + ", RICOCHET_SEED=" + std::to_string(seed));
     Simulation simulation(Case(mesh, seed).setup());
@@ -174,7 +176,7 @@ std::uint64_t run_case(const NamedMesh& mesh, std::uint64_t seed) {
     EXPECT_EQ(statistics.violations, 0U);
     for (const Violation& violation : simulation.violations()) {
         const bool is_of_impacts = violation.kind == ViolationKind::energy;
-        if (is_of_impacts) continue;  // other tests check it
+        if (is_of_impacts) continue;  // other tests check the energy
         ADD_FAILURE() << "kind " << static_cast<int>(violation.kind) << " of particle " << violation.particle << " at "
                       << violation.time << " s, triangle " << violation.triangle.value_or(0);
         break;
@@ -202,8 +204,9 @@ TEST_P(ManyBounces, LeaveEveryParticleOnItsSide) {
     }
 }
 
-// Points accumulate in a gap of a third of a degree, where friction stops them, or beside a vertex at the origin, where
-// coordinates have no smallest size. Each of these cases once took minutes.
+// In one case, points accumulate in a gap of a third of a degree, where friction stops them. In another case they
+// accumulate beside a vertex at the origin, where coordinates can be arbitrarily small. Each of these cases once took
+// minutes.
 TEST(ManyBouncesOfOneCase, EndIfPointsAccumulate) {
     if (test::kSanitized) GTEST_SKIP() << "some minutes in such a build";
     const std::array<std::pair<const char*, std::uint64_t>, 3> cases{

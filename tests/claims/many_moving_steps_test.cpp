@@ -1,10 +1,11 @@
-// Nothing leaks in very many steps. Closed meshes spin, tumble and shake, and other meshes deform, each with many
-// points. The parity reference or the height determines their sides, and the verifier checks some of the steps.
+// No point leaks in very many steps. Closed meshes with many points spin, tumble and shake, and other meshes deform.
+// The parity reference or the height of the mesh determines the side of each point. The verifier checks some of the
+// steps.
 //
-// A long run has a thousand steps of a thousand particles each. RICOCHET_MOVING_STEPS=whole sets the full numbers, 10^5
-// steps of 10^4 particles (10^4 of 10^5 for deforming meshes), which take many runs. RICOCHET_MOVING_LOG names a folder
-// in which each case saves its state and its counts, so that a later run continues. RICOCHET_MOVING_SECONDS limits the
-// time of a case.
+// A long run has a thousand steps of a thousand particles each. RICOCHET_MOVING_STEPS=whole sets the full numbers: 10^5
+// steps of 10^4 particles, or 10^4 steps of 10^5 particles for deforming meshes. The full numbers take several runs of
+// the test. RICOCHET_MOVING_LOG names a folder in which each case saves its state and its counts. A later run then
+// continues. RICOCHET_MOVING_SECONDS limits the time of a case.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,7 +58,7 @@ Amount amount_wanted(bool deforms) {
     return {60, static_cast<std::uint64_t>(std::max(20, test::scaled(100))), 20};
 }
 
-/// Returns an emitter of points in a closed mesh, or on a sheet.
+/// Returns an emitter of points inside a closed mesh, or above a sheet.
 EmitterDescription points_in(EmitterShape shape, double size, std::uint64_t count) {
     EmitterDescription emitter;
     emitter.shape = std::move(shape);
@@ -66,7 +67,7 @@ EmitterDescription points_in(EmitterShape shape, double size, std::uint64_t coun
     return emitter;
 }
 
-/// Case with its moving collider and the side on which particles must stay.
+/// A case: its moving collider, and the side on which particles must stay.
 class Case {
 public:
     explicit Case(std::string name) : name_(std::move(name)) {
@@ -97,7 +98,7 @@ public:
         return setup;
     }
 
-    /// Returns the number of particles on the wrong side, computed independently of sweeps and certificates.
+    /// Returns the number of particles on the wrong side. The computation uses neither sweeps nor certificates.
     [[nodiscard]] std::uint64_t count_outside(const Simulation& simulation) const {
         const TriangleMesh mesh = *simulation.collider_mesh(0);
         const std::span<const Vec3> positions = simulation.particles().position;
@@ -136,10 +137,10 @@ private:
     }
 
     std::string name_;
-    std::shared_ptr<const TriangleMesh> mesh_;  // for cases without deformation
+    std::shared_ptr<const TriangleMesh> mesh_;  // null for cases with deformation
 };
 
-/// Files of a case between two runs: NAME.state, and NAME.log with a line for each count.
+/// Files that a case keeps between two runs: NAME.state, and NAME.log with a line for each count.
 class Ledger {
 public:
     explicit Ledger(const std::string& name) {
@@ -150,7 +151,7 @@ public:
         log_ = folder / (name + ".log");
     }
 
-    /// Returns the saved state, or an empty list at the start.
+    /// Returns the saved state, or an empty list if no state was saved.
     [[nodiscard]] std::vector<char> state() const {
         std::ifstream file(state_, std::ios::binary);
         return {std::istreambuf_iterator<char>(file), {}};
@@ -190,13 +191,13 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Steps up to the next count, from one state to another. The verifier checks one stretch in ten.
+/// A number of steps between two counts, from one saved state to the next. The verifier checks every tenth stretch.
 class Stretch {
 public:
     Stretch(const Case& that, const Amount& amount, const Ledger& ledger)
         : that_(that), amount_(amount), ledger_(ledger) {}
 
-    /// Returns the total number of steps.
+    /// Makes the steps and updates the state. Returns the total number of steps so far.
     std::uint64_t go(std::vector<char>& state, std::uint64_t number) {
         const auto start = std::chrono::steady_clock::now();
         SimulationSetup setup = that_.setup(amount_);
@@ -241,7 +242,8 @@ TEST_P(ManyMovingSteps, LeaveEveryParticleOnItsSide) {
     const auto start = std::chrono::steady_clock::now();
     std::vector<char> state = ledger.state();
     Stretch stretch(that, amount, ledger);
-    // The order of verified stretches depends on the start of a run. The claims do not depend on it.
+    // `number` starts at 0 in every run, so the choice of verified stretches depends on the state at the start. The
+    // claims do not depend on this choice.
     std::uint64_t steps = 0;
     for (std::uint64_t number = 0; steps < amount.steps && seconds_since(start) < most && !HasFailure(); ++number) {
         steps = stretch.go(state, number);

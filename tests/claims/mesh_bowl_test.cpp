@@ -1,5 +1,6 @@
-// A bowl of triangles converges to the smooth bowl as it is refined. The edge of a facet reduces the speed by the
-// square of its angle h / R. The paths therefore differ by at most first order in the edge length.
+// The motion in a bowl of triangles converges to the motion in a smooth bowl as the mesh is refined. The angle at an
+// edge between facets is h / R, with the edge length h. Each edge reduces the speed by the relative amount (h / R)^2.
+// The paths therefore differ by at most first order in h.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +16,7 @@ namespace RICOCHET_FILE {
 constexpr double kG = kStandardGravity;
 constexpr double kAngle = 0.5;  // start angle from the lowest point
 
-/// Returns the position from the centre along `direction` at which the surface is `radius` away.
+/// Returns the position on the ray from the centre along `direction` whose distance from the surface is `radius`.
 Vec3 touching(const std::vector<ColliderDescription>& colliders, const Vec3& direction, double radius) {
     const CollisionQueries queries(colliders);
     double low = 0.0;
@@ -39,8 +40,8 @@ ContactScene swing(ColliderDescription bowl, const Vec3& direction, double radiu
     return scene;
 }
 
-/// Returns the largest distance between the paths in an icosphere of 8 * 4^levels triangles and in the ball, in m. It
-/// is the mean over five start directions.
+/// Compares the paths in an icosphere of 8 * 4^levels triangles and in the ball. Returns the largest distance between
+/// them, in m, averaged over five start directions.
 double distance_from_smooth(int levels, double radius, double friction) {
     double sum = 0.0;
     for (const double azimuth : {0.1, 0.4, 0.8, 1.3, 1.9}) {
@@ -82,7 +83,7 @@ TEST_P(MeshBowl, ConvergesToTheSmoothBowlAtFirstOrder) {
         EXPECT_LT(error, 1.5 * coarse / factor) << "refined " << factor << " times, before " << last;
         last = error;
     }
-    EXPECT_LT(coarse, 0.3);  // in m: it is the same swing
+    EXPECT_LT(coarse, 0.3);  // in m; the paths belong to the same swing
 }
 
 }  // namespace RICOCHET_FILE

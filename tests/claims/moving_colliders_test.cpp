@@ -1,4 +1,4 @@
-// Particles hit moving colliders at the right time and with the right speed, and none passes through.
+// Particles hit moving colliders at the exact time and with the exact speed, and no particle passes through.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,8 +23,8 @@ constexpr double kG = 9.81;
 constexpr double kPi = 3.14159265358979323846;
 constexpr long double kPiLong = 3.14159265358979323846L;
 
-// A ball flies between a wall at rest at 0 and one that comes from 1 m at 0.1 m/s. The time of each impact follows from
-// the previous one.
+// A ball flies between a wall at rest at 0 and a wall that approaches from 1 m at 0.1 m/s. Each expected time of impact
+// follows from the previous impact.
 TEST(ABallBetweenClosingWalls, GainsTwiceTheSpeedOfTheWallAtEachImpactOnIt) {
     for (const double radius : {0.0, 0.01}) {
         auto setup = setup_of(
@@ -53,8 +53,8 @@ TEST(ABallBetweenClosingWalls, GainsTwiceTheSpeedOfTheWallAtEachImpactOnIt) {
     }
 }
 
-// A cloud is in a cube that turns about a skew axis. No particle leaves it, and the verifier confirms that with its own
-// arithmetic.
+// A cloud of particles is in a cube that turns about a skew axis. No particle leaves the cube, and the verifier
+// confirms this independently.
 TEST(PointsAndSpheres, StayInsideACubeThatSpins) {
     for (const double radius : {0.0, 0.02}) {
         auto setup = setup_of({frame_of("spin", {Spin{{1, 2, 3}, 400.0}})},
@@ -76,7 +76,7 @@ TEST(PointsAndSpheres, StayInsideACubeThatSpins) {
     }
 }
 
-// The same cloud, described in a uniformly moving frame, has the same impacts.
+// The same cloud has the same impacts if it is described in a uniformly moving frame.
 TEST(Impacts, AreTheSameInAUniformlyMovingFrame) {
     const Vec3 drift{1.5, -0.7, 0.4};
     for (const double radius : {0.0, 0.05}) {
@@ -112,7 +112,7 @@ TEST(Impacts, AreTheSameInAUniformlyMovingFrame) {
     }
 }
 
-// Rotation about a body's own axis has no effect without friction.
+// The rotation of a ball or cylinder about its own axis has no effect without friction.
 TEST(ABallAndACylinder, TurningAboutTheirOwnAxisActAsAtRest) {
     for (const double radius : {0.0, 0.05}) {
         std::vector<std::vector<ContactRecord>> contacts;
@@ -197,7 +197,7 @@ TEST(Walls, ThatTurnActAsWallsAtRestWithTheForcesOfTheirFrame) {
 }
 
 /// Returns the first time at which a point on a straight path leaves a cube that turns about an axis through the
-/// origin. It samples the exact motion in small steps and brackets the root, in long double.
+/// origin. Samples the exact motion in small steps and brackets the root, in long double.
 long double first_exit(const Vec3& from, const Vec3& velocity, const Vec3& axis, long double rate, double half) {
     using Long = long double;
     const auto outside = [&](Long t) {
@@ -246,8 +246,8 @@ TEST(APoint, HitsATurningCubeAtTheExactTime) {
     EXPECT_GT(std::count(hit.begin(), hit.end(), true), 250);
 }
 
-// A sphere that rolls on a table turning at w moves in a circle at 2/7 of w (J. A. Burns, "Ball rolling on a
-// turntable", American Journal of Physics 49, 1981).
+// A sphere that rolls on a table moves in a circle at 2/7 of the table's angular velocity w. Source: J. A. Burns, "Ball
+// rolling on a turntable", American Journal of Physics 49, 1981.
 TEST(ASphereOnATurntable, OrbitsAtTwoSeventhsOfItsRate) {
     const double w = 3.0;
     const double radius = 0.05;
@@ -304,7 +304,8 @@ TEST(ASphere, KeepsItsPositionOnAUniformlyMovingBodyToTheLastBit) {
     }
 }
 
-/// Returns the first time after `from` at which a freely flying ball reaches the table A sin(omega t), by bracketing.
+/// Returns the first time after `from` at which a freely flying ball reaches the table, whose height is A sin(omega t).
+/// Finds the root by bracketing.
 double next_landing(double from, double height, double speed, double amplitude, double omega) {
     const auto gap = [&](double t) {
         const double s = t - from;
@@ -320,7 +321,8 @@ double next_landing(double from, double height, double speed, double amplitude, 
     return low;
 }
 
-// Chaos separates any two runs soon. Each landing is therefore predicted from the previous impact.
+// The motion is chaotic, so two runs with different rounding soon diverge. Each landing is therefore predicted from the
+// previous impact.
 TEST(ABallOnAnOscillatingTable, LandsAtTheExactTimeEachTime) {
     const double frequency = 10.0;
     const double omega = 2.0 * kPi * frequency;
@@ -354,8 +356,8 @@ TEST(ABallOnAnOscillatingTable, LandsAtTheExactTimeEachTime) {
     }
 }
 
-// A point lies on the table until the table falls away faster than gravity. That happens at sin(omega t) = g / (A
-// omega^2), with the speed of the table, for any time step.
+// A point lies on the table until the table accelerates downwards faster than gravity. This happens at sin(omega t) = g
+// / (A omega^2). The point then has the speed of the table, for any time step.
 TEST(APointOnATable, TakesOffWhenTheTableAcceleratesDownwardsAtG) {
     const double frequency = 5.0;
     const double omega = 2.0 * kPi * frequency;
@@ -381,7 +383,7 @@ TEST(APointOnATable, TakesOffWhenTheTableAcceleratesDownwardsAtG) {
 // On a slowly turning ramp the point starts to slip when the slope exceeds the angle of friction.
 TEST(APointOnATurningRamp, SlipsWhenTheSlopeExceedsTheAngleOfFriction) {
     const double friction = 0.3;
-    const double rate = 0.01;  // in degrees/s; the rotation itself adds less than 1e-9
+    const double rate = 0.01;  // in degrees/s; accelerations due to the rotation change the result by less than 1e-9
     auto setup = setup_of({frame_of("ramp", {Spin{{0, 1, 0}, rate}})},
                           {{"ramp", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0, "ramp"}}, 0.5, 1800.0);
     setup.options.verify = false;
@@ -402,8 +404,8 @@ TEST(APointOnATurningRamp, SlipsWhenTheSlopeExceedsTheAngleOfFriction) {
     EXPECT_LE(simulation.time() - 0.5, slips_at + 0.5 + 1e-3);
 }
 
-// The blade pushes a particle along a floor with friction. The particle moves with the blade, and the blade receives
-// the friction and the impulse of the start.
+// The blade pushes a particle along a floor with friction. The particle moves with the blade. The impulse on the blade
+// is the impulse of the start plus the impulse of the floor's friction.
 TEST(APointBeforeABlade, IsPushedAlongTheFloorWithTheBladesSpeed) {
     const double u = 0.5;
     const double friction = 0.4;
@@ -424,8 +426,8 @@ TEST(APointBeforeABlade, IsPushedAlongTheFloorWithTheBladesSpeed) {
         EXPECT_NEAR(p.position[0].x, u * 3.0 + radius, 1e-12);
         EXPECT_NEAR(p.velocity[0].x, u, 1e-12);
         EXPECT_NEAR(p.position[0].z, radius, 1e-13);
-        // For a sliding point, the blade balances the friction. A sphere rolls, and the frictionless blade does no
-        // work.
+        // For a sliding point, the blade's force equals the floor's friction. A sphere rolls, so the frictionless blade
+        // exerts no force.
         const double push = radius > 0.0 ? 0.0 : friction * kG * (3.0 - start);
         EXPECT_NEAR(before - simulation.triangle_totals(1).impulse[0].x, push, 1e-9);
         EXPECT_EQ(simulation.statistics().violations, 0U);
@@ -434,8 +436,7 @@ TEST(APointBeforeABlade, IsPushedAlongTheFloorWithTheBladesSpeed) {
     }
 }
 
-// A plane that turns about the origin pushes the point along a wall one metre away. The point stays at x = tan(omega
-// t).
+// A plane turns about the origin and pushes the point along a wall one metre away. The point is at x = tan(omega t).
 TEST(APointBeforeATurningArm, IsPushedAlongAWallAndNotThroughTheArm) {
     for (const double step : {0.01, 0.04}) {
         for (const double rate : {0.5, 1.0}) {
@@ -456,8 +457,8 @@ TEST(APointBeforeATurningArm, IsPushedAlongAWallAndNotThroughTheArm) {
     }
 }
 
-// The blade sweeps a point over the inside of a ball. No frame has both surfaces at rest. The point spirals outward
-// along the blade.
+// The blade sweeps a point over the inside of a ball. There is no frame in which both surfaces are at rest. The point
+// spirals outward along the blade.
 TEST(APointBeforeATurningBlade, IsSweptThroughABowl) {
     std::vector<Vec3> ends;
     for (const double step : {0.01, 0.005}) {
@@ -485,7 +486,7 @@ TEST(ACup, LosesNoSphereThroughItsWalls) {
                                              Interpolation::cubic_spline, CurveEnds::repeat)},
                                          Swing{{1, 0, 0}, 50.0, 0.7, 0.0}, Oscillation{{0.05, 0, 0.02}, 6.0, 0.0}};
         TriangleMesh cup = cuboid_mesh({0.6, 0.6, 0.6});
-        std::erase_if(cup.triangles, [&](const Triangle& t) {  // without its lid
+        std::erase_if(cup.triangles, [&](const Triangle& t) {  // removes the lid
             return cup.vertices[t[0]].z > 0.0 && cup.vertices[t[1]].z > 0.0 && cup.vertices[t[2]].z > 0.0;
         });
         auto setup =
@@ -508,7 +509,7 @@ FrameDescription stopping(const Vec3& velocity) {
     return frame_of("table", {KeyedTranslation{KeyedCurve<Vec3>({{0.0, {}}, {0.47, 0.47 * velocity}})}});
 }
 
-// When the velocity of a body jumps, a particle on it keeps its own velocity.
+// If the velocity of a body jumps, a particle on the body keeps its own velocity.
 TEST(APointOnATable, IsThrownOffOrSlidesOnIfTheTableStopsSuddenly) {
     for (const double step : {0.01, 0.03}) {
         for (const Vec3& velocity : {Vec3{0, 0, 1}, Vec3{1, 0, 0}}) {
@@ -529,8 +530,8 @@ TEST(APointOnATable, IsThrownOffOrSlidesOnIfTheTableStopsSuddenly) {
     }
 }
 
-// The frame's coordinates are near zero there, but the world's are not. The contact offset must exceed the rounding of
-// the world's coordinates.
+// The particle's coordinates are near zero in the frame, but not in the world. The contact offset must exceed the
+// rounding of the world coordinates.
 TEST(APointAtTheOriginOfItsFrame, IsCarriedDespiteRounding) {
     for (const double direction : {1.0, -0.1}) {
         for (const bool is_box : {false, true}) {
@@ -562,7 +563,7 @@ TEST(AParticleThatIsBornOnAMovingSurface, LeavesIt) {
     }
 }
 
-// In a frame at rest every result equals that in the world, with every integrator.
+// A frame at rest must give the same results as the world frame, with every integrator.
 TEST(LastingContact, InAFrameAtRestIsThatOfTheWorldWithEveryIntegrator) {
     for (const IntegratorKind kind :
          {IntegratorKind::forward_euler, IntegratorKind::symplectic_euler, IntegratorKind::implicit_euler,
@@ -579,7 +580,8 @@ TEST(LastingContact, InAFrameAtRestIsThatOfTheWorldWithEveryIntegrator) {
             static_cast<void>(all_contacts(simulation));
             const auto what = static_cast<int>(kind);
             EXPECT_NEAR(simulation.particles().position[0].x, 1.6, 1e-12) << what;
-            // Straight flights with forward Euler, whose velocity changes act at their ends, bounce by about g h^2.
+            // With forward Euler, flights within a step are straight and the velocity changes only at the end. The
+            // particle therefore bounces by about g h^2.
             const double hop = kind == IntegratorKind::forward_euler ? 2e-3 : 1e-12;
             EXPECT_NEAR(simulation.particles().position[0].z, radius, hop) << what;
             EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0) << what;
@@ -587,8 +589,8 @@ TEST(LastingContact, InAFrameAtRestIsThatOfTheWorldWithEveryIntegrator) {
     }
 }
 
-/// Returns the distance, in m, between the upper ends of two springs that land without friction. One lands on a plane
-/// at rest, and one on a plane that moves along itself.
+/// Returns the distance, in m, between the upper ends of two springs after landing without friction. One spring lands
+/// on a plane at rest. The other spring lands on a plane that moves along itself.
 double apart_on_a_plane_that_moves(double step) {
     std::vector<Vec3> upper;
     for (const bool moves : {false, true}) {
@@ -608,8 +610,8 @@ double apart_on_a_plane_that_moves(double step) {
     return length(upper[0] - upper[1]);
 }
 
-// The impulse of a plane at rest is part of the plan. The impulse of a moving plane is not, and a correction at the end
-// of the step adds it. Both results agree to second order.
+// The plan of the coupled particles includes the impulse of a plane at rest. It does not include the impulse of a
+// moving plane, so a correction at the end of the step adds this impulse. Both results agree to second order.
 TEST(ASpring, LandsEquallyOnAPlaneAtRestAndMovingAlongItselfToSecondOrder) {
     const double coarse = apart_on_a_plane_that_moves(0.002);
     const double fine = apart_on_a_plane_that_moves(0.001);
@@ -617,7 +619,7 @@ TEST(ASpring, LandsEquallyOnAPlaneAtRestAndMovingAlongItselfToSecondOrder) {
     EXPECT_LT(fine, coarse / 3.8);
 }
 
-// The number of threads, the order of colliders, and a restart in the middle change no bit.
+// The number of threads, the order of colliders, and a save and restore in the middle of the run change no bit.
 TEST(AScene, WithMovingCollidersHasTheSameBitsInAnyKindOfRun) {
     const auto make = [](bool shuffled) {
         auto setup = setup_of({frame_of("rotor", {Spin{{0, 0, 1}, 200.0}}), frame_of("lift", {steady({0, 0, 0.1})})},

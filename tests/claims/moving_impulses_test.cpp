@@ -1,5 +1,5 @@
-// Recorded impulses of moving colliders on particles: each impulse, and in each step the sums of momentum, angular
-// momentum and energy over all particles.
+// Recorded impulses of moving colliders on particles. The tests check single impulses. They also check the balance of
+// momentum, angular momentum and energy over all particles in each step.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace RICOCHET_FILE {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Returns a room at rest with a paddle that spins and shakes, and beside it a ball that swings about a pole.
+/// Returns a room at rest with particles. In the room, a paddle spins and shakes, and a ball swings about a pole.
 SimulationSetup stirred_room(Material material, double radius, int particles, std::uint64_t seed) {
     auto setup = setup_of({frame_of("paddle", {Oscillation{{0.1, 0.2, 0.05}, 1.3, 40.0}, Spin{{1, 2, 3}, 300.0}}),
                            frame_of("pole", {Swing{{0, 0, 1}, 80.0, 0.9, 0.0}}, {0, 0, 1.2})},
@@ -41,9 +41,9 @@ SimulationSetup stirred_room(Material material, double radius, int particles, st
 
 struct Sums {
     Vec3 momentum;
-    Vec3 angular_momentum;  ///< about the origin, with spin
+    Vec3 angular_momentum;  ///< about the origin, including spin
     double energy = 0.0;    ///< kinetic
-    double scale = 0.0;     ///< sum of momenta without cancellation
+    double scale = 0.0;     ///< sum of the magnitudes of momenta
 };
 
 Sums sums_of(const Particles& particles) {
@@ -89,8 +89,8 @@ TEST(EveryImpulseOfASmoothWallThatMoves, IsOnePlusETimesItsApproach) {
     }
 }
 
-/// Steps the simulation and checks the balances. All gains of the particles must equal the impulses of the impacts,
-/// with lever arms to the contacts.
+/// Steps the simulation and checks the balances. In each step, the particles' gain of momentum must equal the sum of
+/// the recorded impulses. The gain of angular momentum must equal the moments of these impulses at the contact points.
 void expect_closed(Simulation& simulation, bool has_energy) {
     std::size_t contacts = 0;
     Vec3 totals;
@@ -122,7 +122,7 @@ void expect_closed(Simulation& simulation, bool has_energy) {
             ASSERT_NEAR(after.energy - before.energy, work, 1e-12 * (before.energy + after.energy))
                 << simulation.time();
         }
-        // The totals of all surfaces must agree.
+        // The impulse totals of all surfaces must change by the same amount.
         const Vec3 given = total_impulse();
         ASSERT_LT(length(given - totals + impulse), 1e-12 * (scale + length(given))) << simulation.time();
         totals = given;
@@ -131,7 +131,7 @@ void expect_closed(Simulation& simulation, bool has_energy) {
     EXPECT_GT(contacts, simulation.particles().size());
 }
 
-// Elastic and smooth: the work of the walls, J . w, is the whole energy gain.
+// Impacts are elastic and frictionless. The energy gain is then the work of the walls, J . w.
 TEST(MomentumAndEnergy, GivenByMovingCollidersEqualTheirRecordedImpulses) {
     for (const double radius : {0.0, 0.05}) {
         Simulation simulation(stirred_room({"", 1.0, 0.0}, radius, test::scaled(400), 22));
@@ -147,8 +147,8 @@ TEST(MomentumAndAngularMomentum, AreBalancedWithFrictionAndSpin) {
     }
 }
 
-// Points and spheres slide, roll and rest on trays that swing, turn and shake. The recorded momentum of the trays must
-// equal the loss of the particles, also in persistent contact.
+// Points and spheres slide, roll and rest on trays that swing, turn and shake. The recorded impulse on the trays must
+// equal the momentum that the particles lose, also in persistent contact.
 TEST(MomentumOfContactThatLasts, IsBalancedWithTheMomentumOfColliders) {
     for (const double radius : {0.0, 0.05}) {
         const Vec3 gravity{0, 0, -9.81};
@@ -186,14 +186,14 @@ TEST(MomentumOfContactThatLasts, IsBalancedWithTheMomentumOfColliders) {
     }
 }
 
-// A plate turns in a cold beam of speed u along -z. At the lever arm s the beam arrives with u cos(angle) + w s along
-// the plate's normal. The rate of particles is proportional to that, and each transfers twice its momentum. The
-// integrals over the plate and over the angle, from -a to a, are
+// A plate turns at the rate w in a cold beam of speed u along -z. At the lever arm s, the speed of approach along the
+// plate's normal is u cos(angle) + w s. The rate of impacts is proportional to this speed, and each particle transfers
+// twice its normal momentum. The integrals over the plate and over the angle, from -a to a, are
 //
 //     impulse along z:  2 rho d / w  int cos (2 h u^2 cos^2 + 2/3 h^3 w^2),
 //     angular impulse:  2 rho d / w  int 4/3 h^3 u w cos,
 //
-// with h: half the width, and d: the depth of the plate.
+// Here h is half the width of the plate, d is its depth, and rho is the mass density of the beam.
 TEST(APlateThatTurnsInAColdBeam, ReceivesTheImpulseAndAngularImpulseOfTheQuadrature) {
     const double u = 10.0;
     const double w = 4.0;
@@ -226,14 +226,14 @@ TEST(APlateThatTurnsInAColdBeam, ReceivesTheImpulseAndAngularImpulseOfTheQuadrat
     Vec3 torque;
     double hits = 0.0;
     for (const ContactRecord& record : all_contacts(simulation)) {
-        if (record.velocity_before != Vec3{0, 0, -u}) continue;  // its second impact
+        if (record.velocity_before != Vec3{0, 0, -u}) continue;  // not the first impact of its particle
         impulse -= impulse_of(record);
         torque -= cross(record.position, impulse_of(record));
         ++hits;
     }
     const double density = 1.0 / volume;
     const double s = std::sin(angle);
-    const double cubed = 2.0 * (s - s * s * s / 3.0);  // of cos^3
+    const double cubed = 2.0 * (s - s * s * s / 3.0);  // integral of cos^3
     const double down = 2.0 * density * d / w * (2.0 * h * u * u * cubed + 2.0 / 3.0 * h * h * h * w * w * 2.0 * s);
     const double turning = 2.0 * density * d / w * (4.0 / 3.0 * h * h * h * u * w * 2.0 * s);
     const double noise = 4.0 / std::sqrt(hits);
@@ -241,7 +241,7 @@ TEST(APlateThatTurnsInAColdBeam, ReceivesTheImpulseAndAngularImpulseOfTheQuadrat
     EXPECT_NEAR(impulse.z, -down, noise * down);
     EXPECT_NEAR(std::fabs(torque.y), turning, noise * down * h);
     EXPECT_NEAR(impulse.x, 0.0, noise * down);
-    EXPECT_LT(torque.y * w, 0.0);  // against its rotation
+    EXPECT_LT(torque.y * w, 0.0);  // the moment acts against the plate's rotation
 }
 
 }  // namespace RICOCHET_FILE

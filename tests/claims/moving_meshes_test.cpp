@@ -1,5 +1,6 @@
-// Nothing leaks out of tumbling meshes. Points and spheres that start inside, with gravity, friction and persistent
-// contact, stay inside in the mesh's own frame. The verifier checks every segment with its own arithmetic.
+// No particle leaks out of tumbling meshes. Points and spheres start inside a mesh, with gravity, friction and
+// persistent contact. They stay inside, as computed in the mesh's own frame. The verifier checks every segment
+// independently.
 //
 // A long run has three hundred particles and four hundred more steps.
 #include <gtest/gtest.h>

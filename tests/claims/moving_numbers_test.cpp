@@ -1,5 +1,5 @@
-// Closed forms and references for moving colliders and driven bodies over long times: a turntable for ten turns, a
-// tumbling mesh, a thousand hits on a body.
+// Long runs of moving colliders and dynamic bodies, compared with closed forms and references. They are a turntable for
+// ten turns, a tumbling mesh, and a thousand impacts on a body.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace RICOCHET_FILE {
 constexpr double kPi = 3.14159265358979323846;
 constexpr long double kPiLong = 3.14159265358979323846L;
 
-/// Relative errors of the radius of the orbit and of the angle travelled.
+/// Relative errors of the orbit's radius and of the angle that the particle has travelled.
 struct OrbitError {
     double radius;
     double angle;
@@ -49,7 +49,7 @@ OrbitError orbit_error(double step) {
     EXPECT_EQ(simulation.statistics().violations, 0U);
     const double rate = 2.0 / 7.0 * w;
     const double angle = rate * simulation.time();
-    const Vec3 arm = cross(v, Vec3{0, 0, 1}) / rate;  // from the orbit's centre
+    const Vec3 arm = cross(v, Vec3{0, 0, 1}) / rate;  // position relative to the orbit's centre
     const Vec3 now = simulation.particles().position[0] - (at - arm);
     const double c = std::cos(angle);
     const double s = std::sin(angle);
@@ -59,7 +59,8 @@ OrbitError orbit_error(double step) {
     return {std::fabs(length(flat) / length(arm) - 1.0), std::fabs(ahead) / angle};
 }
 
-// Ten turns of the table (J. A. Burns, "Ball rolling on a turntable", American Journal of Physics 49, 1981).
+// The run has ten turns of the table. Source: J. A. Burns, "Ball rolling on a turntable", American Journal of Physics
+// 49, 1981.
 TEST(ASphereOnATurntable, KeepsTheRadiusAndTheRateOfItsOrbitForTenTurns) {
     const OrbitError fine = orbit_error(1e-3);
     EXPECT_LT(fine.radius, 1e-6);
@@ -73,7 +74,8 @@ TEST(ASphereOnATurntable, KeepsTheRadiusAndTheRateOfItsOrbitForTenTurns) {
 using Long = long double;
 using LongVec = std::array<Long, 3>;
 
-/// Returns the coordinates of a point of the world in a body that turns about an axis and is shaken, in long double.
+/// Converts a point from world coordinates to the coordinates of a body that turns about an axis and is shaken, in long
+/// double.
 LongVec seen_by_tumbler(const LongVec& x, const Vec3& axis, Long degrees_per_s, const Vec3& shake, Long frequency,
                         Long t) {
     const Long sine = std::sin(2.0L * kPiLong * frequency * t);
@@ -89,7 +91,8 @@ LongVec seen_by_tumbler(const LongVec& x, const Vec3& axis, Long degrees_per_s, 
             c * d[2] + s * (u[0] * d[1] - u[1] * d[0]) + (1 - c) * along * u[2]};
 }
 
-/// Returns the largest height above the plane of a face. A point is outside a convex mesh if it is above 0.
+/// Returns the largest height of a point above the planes of the faces. The point is outside a convex mesh if this
+/// height is positive.
 Long height_above(const TriangleMesh& mesh, const LongVec& y) {
     Long most = -1e30L;
     for (const Triangle& t : mesh.triangles) {
@@ -163,7 +166,8 @@ Budget budget_of(const Simulation& simulation) {
     return sum;
 }
 
-/// Returns a hollow box, free in space, with elastic points in it. Their mass is that of the box divided by `ratio`.
+/// Returns a hollow box that moves freely in space, with elastic points in it. The mass of the box is `ratio` times the
+/// mass of one point.
 Simulation rattle(double ratio, std::uint64_t seed, double step, const SymmetricMatrix& shape) {
     FrameDescription frame = frame_of("box", {});
     frame.is_driven = true;
@@ -183,8 +187,8 @@ Simulation rattle(double ratio, std::uint64_t seed, double step, const Symmetric
     return Simulation(std::move(setup));
 }
 
-// An elastic hit is a substep that ends a billionth of the time to the next hit later, but lasts at least a millionth
-// of the step. This limits the energy error of a hit.
+// After an elastic impact, a short substep updates the body. It lasts a billionth of the time to the next impact, but
+// at least a millionth of the step. This length limits the energy error of an impact.
 TEST(AThousandElasticHits, OnAFreeCubeConserveEnergyMomentumAndAngularMomentum) {
     for (const auto& [ratio, seed] : {std::pair(1.0, 12), {1.0, 4}, {0.3, 2}, {10.0, 12}, {1000.0, 12}}) {
         SCOPED_TRACE(std::to_string(ratio) + " " + std::to_string(seed));
@@ -208,7 +212,7 @@ TEST(AThousandElasticHits, OnAFreeCubeConserveEnergyMomentumAndAngularMomentum) 
     }
 }
 
-/// Returns a door on a spring, hit by elastic points.
+/// Returns a door on a spring that elastic points hit.
 Simulation pelted_door(double step) {
     FrameDescription frame = frame_of("door", {});
     frame.is_driven = true;
@@ -235,8 +239,8 @@ Simulation pelted_door(double step) {
     return Simulation(std::move(setup));
 }
 
-// The spring follows its closed form for any substeps. One error remains: the impact uses the body's velocity at its
-// time, but the body receives it at the end of the substep.
+// The motion on the spring follows its closed form for any length of the substeps. One error remains. An impact uses
+// the body's velocity at the time of impact, but the body receives the impulse at the end of the substep.
 TEST(ADoorOnASpring, ConservesTheEnergyTogetherWithTheParticlesThatHitIt) {
     for (const double step : {0.002, 0.02}) {
         SCOPED_TRACE(step);

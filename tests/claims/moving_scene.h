@@ -1,4 +1,4 @@
-/// \file Scenes with moving colliders, run through the library's interface. Shared by their tests.
+/// \file Scenes with moving colliders, for several tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -27,7 +27,8 @@ namespace ricochet::testing {
     return {KeyedCurve<Vec3>({{0.0, {}}, {until, until * velocity}})};
 }
 
-/// Returns a frame that spins about a skew axis, swings, and shakes, in proportion to a mesh's size in m.
+/// Returns a frame that spins about a skew axis, swings and shakes. The amplitudes are proportional to `size`, which is
+/// the size of a mesh in m.
 [[nodiscard]] inline FrameDescription tumbling(double size, double spin) {
     FrameDescription frame;
     frame.name = "tumbling";
@@ -39,7 +40,7 @@ namespace ricochet::testing {
     return frame;
 }
 
-/// Returns a verified run that records its contacts.
+/// Returns a setup that verifies every step and records contacts.
 [[nodiscard]] inline SimulationSetup setup_of(std::vector<FrameDescription> frames,
                                               std::vector<ColliderDescription> colliders, double time_step,
                                               double duration) {

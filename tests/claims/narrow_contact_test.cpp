@@ -1,4 +1,5 @@
-// Tests spheres in curved surfaces that are narrower than the sphere, and the loads of spheres in a groove.
+// Tests spheres in curved surfaces with a radius of curvature below the sphere's radius, and the loads of spheres in a
+// groove.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -31,7 +32,8 @@ Simulation in_egg(double radius, double restitution, double friction, Integrator
     return Simulation(std::move(setup));
 }
 
-// The sphere touches both sides at z^2 = (c^2 - b^2)(1 - r^2 / b^2) above the middle. Its steps move it off that plane.
+// A centred sphere touches both sides at z^2 = (c^2 - b^2)(1 - r^2 / b^2), measured from the middle. The computed steps
+// move the sphere out of the plane of symmetry.
 TEST(ASphereWiderThanTheTipOfAnEllipsoid, JamsBetweenItsSidesWithoutEnergyGain) {
     for (const IntegratorKind integrator :
          {IntegratorKind::ballistic, IntegratorKind::rk4, IntegratorKind::symplectic_euler}) {
@@ -62,7 +64,8 @@ TEST(ASphereNarrowerThanTheTipOfAnEllipsoid, RollsThroughIt) {
     EXPECT_GT(simulation.kinetic_energy(), 0.0);
 }
 
-/// Returns the impulses on two walls at 60 degrees, in N s, while a sphere lies between them for one second.
+/// Returns the impulses on two walls with an angle of 60 degrees, in N s. A sphere lies between the walls for one
+/// second.
 std::array<Vec3, 2> loads_of_groove(double time_step) {
     SimulationSetup setup;
     setup.options.time_step = time_step;
@@ -77,8 +80,8 @@ std::array<Vec3, 2> loads_of_groove(double time_step) {
     return {simulation.triangle_totals(0).impulse[0], simulation.triangle_totals(1).impulse[0]};
 }
 
-// With friction the load of a groove can be distributed in many ways. The same distribution must be used for resting,
-// waking and sleeping spheres.
+// With friction, the weight of a sphere in a groove can be distributed over the walls in many ways. Resting, waking and
+// sleeping spheres must have the same distribution.
 TEST(ASphereThatLiesInAGroove, LoadsItsWallsWithTheSameForcesForAnyStep) {
     const auto [first, other] = loads_of_groove(0.5);
     EXPECT_LT(first.y, -0.1);

@@ -1,4 +1,4 @@
-// Tests forces of near pairs in whole runs: energy and momentum, with and without walls.
+// Tests forces between near pairs of particles in whole runs. Checks energy and momentum, with and without walls.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using test::momentum;
 using test::momentum_scale;
 using testing::setup_of;
 
-/// Returns molecules on a grid with 1.15 diameters between them and thermal velocities.
+/// Returns molecules with thermal velocities on a grid with a spacing of 1.15 diameters.
 SimulationSetup molecules(int side, double time_step, double duration) {
     SimulationSetup setup = setup_of(time_step, duration);
     setup.options.integrator = IntegratorKind::velocity_verlet;
@@ -67,8 +67,8 @@ TEST(LennardJones, ConservesMomentumOverAThousandSteps) {
     EXPECT_LT(length(momentum(run.particles()) - before), 1e-13 * momentum_scale(run.particles()));
 }
 
-// Two cohesive spheres are thrown against a wall. Damping along their connecting line ends their oscillation, and their
-// centre of mass moves as that of one body.
+// Two cohesive spheres are thrown against a wall. Damping along their connecting line ends their oscillation. Their
+// common centre of mass moves like that of a single body.
 TEST(Cohesion, KeepsSpheresTogetherAfterABounce) {
     SimulationSetup setup = setup_of(0.001, 2.0);
     setup.particles = {body({0, 0, 1}, {0, 0, -1}, 1.0), body({0.2, 0, 1}, {0, 0, -1}, 1.0)};

@@ -69,7 +69,8 @@ inline ChargeSettings unit_coulomb() {
 /// Eccentricity of the orbit of two_bodies().
 inline constexpr double kEccentricity = 0.3;
 
-/// Returns masses 3 and 1 with G (m1 + m2) = 1 on an ellipse of semi-axis 1, at pericentre.
+/// Returns two bodies of masses 3 and 1 at the pericentre of their orbit. The orbit is an ellipse with semi-major axis
+/// 1, and G (m1 + m2) = 1.
 inline SimulationSetup two_bodies(double time_step, double duration) {
     SimulationSetup setup = testing::setup_of(time_step, duration);
     const double distance = 1.0 - kEccentricity;
@@ -80,7 +81,7 @@ inline SimulationSetup two_bodies(double time_step, double duration) {
     return setup;
 }
 
-/// Returns like charges in a ball.
+/// Returns charges of equal sign at random positions in a ball.
 inline SimulationSetup charged_gas(std::size_t count, double time_step, double duration) {
     SimulationSetup setup = testing::setup_of(time_step, duration);
     setup.attributes = {{"charge", 1, {}}};

@@ -1,5 +1,5 @@
-// Tests forces between particles in whole runs: participating particles, births and deaths, reproducible bits, and
-// refused settings.
+// Tests forces between particles in whole runs: the choice of participating particles, births and deaths, reproducible
+// bits, and refused settings.
 #include "ricochet/dynamics/particles_force.h"
 
 #include <gtest/gtest.h>
@@ -181,8 +181,8 @@ TEST(ParticlesForces, AreRefusedWithOneLineIfTheyCannotAct) {
     });
 }
 
-// Coincident points have no direction between them. At a tiny distance without softening, the force exceeds all bounds
-// and the run reports it.
+// The force between coincident points is zero, because it has no direction. At a tiny distance without softening, the
+// force becomes too large for the arithmetic. The run ends with an error.
 TEST(ParticlesForces, AreZeroForCoincidentParticlesAndEndTheRunForNearlyCoincidentOnes) {
     SimulationSetup setup = setup_of(0.01, 1.0);
     setup.particles = {body({1, 2, 3}, {}, 1.0), body({1, 2, 3}, {}, 1.0)};

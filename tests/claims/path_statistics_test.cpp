@@ -29,7 +29,7 @@ using testing::Sample;
 constexpr double kPi = 3.14159265358979323846;
 const Material kMirror{"mirror", 1.0, 0.0};
 
-/// Body full of molecules.
+/// A closed body that contains molecules.
 struct Body {
     std::string name;
     std::vector<ColliderDescription> colliders;
@@ -65,13 +65,14 @@ Vec3 random_place(const Body& body, RandomSequence& random) {
     return p;
 }
 
-/// Hits of one molecule on its path, and the length of the path.
+/// Contact records of one molecule's path, and the length of the path.
 struct Flown {
     std::vector<ContactRecord> hits;
     double translation;
 };
 
-/// Flies each of `count` molecules of random direction for `mean_paths` mean free paths.
+/// Lets each of `count` molecules fly for `mean_paths` mean free paths. Starts are uniform in the body, with random
+/// directions.
 void fly_gas(const Body& body, int count, double mean_paths, const std::function<void(const Flown&)>& evaluate) {
     Course course(body.colliders, kMirror, {}, IntegratorKind::ballistic, 1000000);
     const double translation = mean_paths * 4.0 * body.volume / body.surface;
@@ -88,7 +89,7 @@ class GasIn : public ::testing::TestWithParam<Body (*)()> {};
 INSTANTIATE_TEST_SUITE_P(Bodies, GasIn, ::testing::Values(cube, ball, cylinder),
                          [](const auto& body) { return body.param().name; });
 
-// Cauchy: an isotropic, uniform ensemble hits the walls S / (4 V) times per unit length.
+// By Cauchy's theorem, an isotropic and uniform ensemble hits the walls S / (4 V) times per unit length.
 TEST_P(GasIn, FliesFourVolumesOverTheSurfaceBetweenHits) {
     const Body body = GetParam()();
     const double expected = body.surface / (4.0 * body.volume);
@@ -99,8 +100,8 @@ TEST_P(GasIn, FliesFourVolumesOverTheSurfaceBetweenHits) {
     EXPECT_LT(rate.error(), 0.1 * expected);
 }
 
-// Flux through a wall has a cosine weight. The mean cosine is 2/3, and the share sin^2 30 degrees of the hits is within
-// 30 degrees.
+// The flux onto a wall is weighted by the cosine of the angle to the normal. The mean cosine of hits is 2/3. The share
+// of hits within 30 degrees of the normal is sin^2(30 degrees).
 TEST_P(GasIn, HitsTheWallsByTheCosineLaw) {
     RatioSample cosine(2.0 / 3.0);
     RatioSample within_thirty(0.25);
@@ -119,7 +120,8 @@ TEST_P(GasIn, HitsTheWallsByTheCosineLaw) {
     EXPECT_NEAR(within_thirty.ratio(), 0.25, 4.0 * within_thirty.error());
 }
 
-// Per molecule of unit mass and speed: hits n v / 4 per area and time, pressure n m <v^2> / 3, n = 1 / V.
+// One molecule has unit mass and speed, and the density n = 1 / V. It makes n v / 4 hits per area and time. The
+// pressure is n m <v^2> / 3.
 TEST_P(GasIn, HasThePressureOfKineticTheoryOnTheWalls) {
     const Body body = GetParam()();
     Sample pressure;
@@ -153,7 +155,8 @@ TEST(GasInABunny, FliesFourVolumesOverTheSurfaceBetweenHits) {
     EXPECT_NEAR(rate.mean(), expected, 4.0 * rate.error());
 }
 
-// The unit square has a disk in its middle. Mirrors at the square's sides unfold it into the lattice of disks.
+// The unit square has a disk in its middle. Mirrors at the square's sides are equivalent to an infinite lattice of
+// disks.
 // Source of the mean free path (1 - pi r^2) / (2 r): N. Chernov, "Entropy, Lyapunov exponents, and mean free path for
 // billiards", J. Stat. Phys. 88, 1997.
 TEST(LatticeOfDisks, IsHitOncePerMeanFreePath) {

@@ -1,6 +1,6 @@
-// Calls every function of the public headers with invalid arguments. Each call is refused with one line, or has a
-// documented result. None may crash, hang or ignore the error.
-// The setup and queries of a simulation are tested in tests/simulation/senseless_arguments_test.cpp.
+// Calls every function of the public headers with invalid arguments. Each call is refused with a message of one line,
+// or has a documented result. No call may crash, hang or ignore the error.
+// tests/simulation/senseless_arguments_test.cpp tests the setup and the queries of a simulation.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -24,7 +24,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::array kNotFinite{kNan, kInfinity, -kInfinity};
 constexpr std::array kNoLength{0.0, -1.0, kNan, kInfinity};
 
-/// Expects an error with one line that is not empty.
+/// Expects an error whose message is one line and not empty.
 template <class Error = InputError>
 void expect_refused(const char* what, const std::function<void()>& call) {
     SCOPED_TRACE(what);

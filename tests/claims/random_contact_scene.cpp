@@ -17,10 +17,11 @@
 namespace ricochet::testing {
 namespace {
 
-/// Purpose of the draws. Each has its own stream, so that a change of one does not affect the others.
+/// Purposes of random draws. Each purpose has a separate stream, so that a change of one purpose does not affect the
+/// others.
 enum Stream : std::uint32_t { kOptions = 1, kForces, kMaterials, kRoom, kBodies, kParticles };
 
-/// Draws of one seed and stream.
+/// Random draws of one seed and one stream.
 class Draws {
 public:
     Draws(std::uint64_t seed, Stream stream) : random_(seed, stream, 0) {}
@@ -36,7 +37,7 @@ private:
     RandomSequence random_;
 };
 
-/// Returns a mesh shipped with the project, read once.
+/// Returns a mesh shipped with the project. Each mesh is read only once.
 std::shared_ptr<const TriangleMesh> shipped_mesh(const std::string& name) {
     static std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes;
     auto& mesh = meshes[name];
@@ -62,7 +63,8 @@ Placement random_placement(Draws& draws, double offset, double scale) {
     return placement;
 }
 
-/// Returns a closed shape of half a metre to a metre, times the scale. Shapes other than shipped meshes are made here.
+/// Returns a closed shape with a size of half a metre to a metre, times the scale. The shape is a shipped mesh, a ball,
+/// a cylinder, a box or a sphere mesh.
 ColliderShape random_shape(Draws& draws, double offset, double scale) {
     constexpr std::array kMeshes{"cavity", "drum",       "rock_1", "rock_2", "rock_3", "rock_4",
                                  "rock_5", "torus_knot", "gear",   "bowl",   "funnel", "box"};
@@ -84,7 +86,7 @@ ColliderShape random_shape(Draws& draws, double offset, double scale) {
     }
 }
 
-/// Returns a shape with space inside, for use as a room.
+/// Returns a closed shape with enough space inside to be a room.
 ColliderShape random_room(Draws& draws) {
     constexpr std::array kMeshes{"cavity", "drum", "torus_knot", "rock_2", "rock_4", "bowl"};
     const std::size_t kind = draws.index(8);
@@ -152,7 +154,7 @@ void add_colliders(std::uint64_t seed, SimulationSetup& setup) {
     }
 }
 
-/// Space for particles: inside the room, outside the bodies, and off all surfaces by their radius.
+/// Free space for particles: inside the room, outside the bodies, and at least a radius away from all surfaces.
 class FreeSpace {
 public:
     explicit FreeSpace(const std::vector<ColliderDescription>& colliders)
@@ -162,7 +164,7 @@ public:
         return room_.is_inside(p) && !bodies_.is_inside(p) && !room_.closest_point(p, distance) &&
                !bodies_.closest_point(p, distance);
     }
-    /// Returns the last free position along `direction`, to rounding.
+    /// Returns the last free position from `from` along `direction`, up to rounding.
     [[nodiscard]] Vec3 touching(const Vec3& from, const Vec3& direction, double distance) const {
         constexpr double kStride = 0.01;
         double low = 0.0;
@@ -180,8 +182,8 @@ private:
     CollisionQueries bodies_;
 };
 
-/// Returns true if bounces on one of the colliders never die out. A point that starts at rest 1e-12 m above such a
-/// surface correctly hits it every microsecond, and exhausts the bounce budget of every step.
+/// Returns true if bounces on one of the colliders never end. A point that starts at rest 1e-12 m above such a surface
+/// correctly hits it every microsecond, and exhausts the bounce budget of every step.
 bool bounces_for_ever(const SimulationSetup& setup) {
     return std::any_of(setup.colliders.begin(), setup.colliders.end(), [&](const ColliderDescription& collider) {
         return !setup.materials[collider.material].can_hold(setup.options.resting_speed);

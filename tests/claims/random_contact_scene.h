@@ -1,5 +1,5 @@
-/// \file Random scenes for persistent contact: a closed room of any kind with bodies in it, spheres and points of mixed
-/// sizes, and uniform gravity.
+/// \file Random scenes for persistent contact. A scene has a closed room of any kind with bodies in it, spheres of
+/// mixed sizes, points, and uniform gravity.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace ricochet::testing {
 
-/// Returns the scene of a seed, which is the same on every system. Nothing overlaps at its start, and some particles
-/// touch.
+/// Returns the scene of a seed, which is the same on every system. At the start, no particle overlaps a surface, and
+/// some particles touch one.
 [[nodiscard]] SimulationSetup random_contact_scene(std::uint64_t seed);
 
 /// Returns the uniform acceleration of the scene, in m/s^2.

@@ -1,6 +1,6 @@
-// Particles in contact gain no energy, lose no time, and stay on their side. The random scenes have meshes and shapes
-// from inside and outside, any restitution, friction and rolling friction, and every integrator. Independent code
-// checks them. The bits are the same with sleeping on and off.
+// Particles in contact gain no energy, lose no simulated time, and stay on their side. The random scenes have meshes
+// and shapes, with particles inside and outside, any restitution, friction and rolling friction, and every integrator.
+// Independent code checks the runs. Results have the same bits with and without sleeping.
 //
 // A long run has a thousand scenes. RICOCHET_SEED=... in the environment selects a single scene.
 #include <gtest/gtest.h>
@@ -41,14 +41,14 @@ double energy_of(const Particle& p, const Vec3& gravity) {
            dot(gravity, p.position);
 }
 
-/// Energies per mass, recorded in each step.
+/// Compares each particle's energy per mass with its energy in the previous step.
 class EnergyWatch {
 public:
     EnergyWatch(const Simulation& simulation, const Vec3& gravity) : gravity_(gravity) {
         last_ = by_id(simulation);
         for (const Particle& p : last_) largest_ = std::max(largest_, largest_term(p));
     }
-    /// Fails for every particle that gained more than rounding in the step.
+    /// Fails for every particle whose energy gain in the step exceeds the rounding error.
     void expect_no_gain(const Simulation& simulation) {
         const std::vector<Particle> now = by_id(simulation);
         for (std::size_t i = 0; i < now.size(); ++i) {
@@ -63,12 +63,12 @@ public:
     [[nodiscard]] double worst() const { return worst_; }
 
 private:
-    /// Rounding of a step. It has some hundred intervals and impacts, each with 4e-16 of its largest term, and
-    /// positions 1e-15 off the surface.
+    /// Relative rounding error of a step. A step has a few hundred intervals and impacts. Each has an error of 4e-16 of
+    /// its largest term, and positions 1e-15 off the surface.
     static constexpr double kRounding = 1e-13;
 
-    /// Rounding of an impact. The particle is placed 16 units in the last place off the surface, or 64 if that position
-    /// is not free.
+    /// Relative energy error of an impact. The particle is placed at a contact offset of 16 units in the last place, or
+    /// 64 if that position is not free.
     static constexpr double kRoundingOfImpact = 64 * 0x1p-52;
 
     static double impacts_of(const Simulation& simulation, std::uint64_t particle) {
@@ -145,7 +145,8 @@ TEST(RandomContact, GainsNoEnergyLosesNoTimeAndHasNoLeaks) {
     EXPECT_GT(contacts, range.count);
 }
 
-// Drag and wind do work that depends on the path. Every interval is checked against the forces at its ends.
+// The work of drag and wind depends on the path. The energy gain of every interval is compared with the work of the
+// forces at its ends.
 TEST(RandomContact, GainsNoMoreEnergyThanTheWorkOfAWind) {
     Seeds range = seeds();
     if (range.count > 1) range.count = range.count * 3 / 5;

@@ -1,5 +1,5 @@
-// Walls that reflect by the cosine law: transmission of tubes, chords in a sphere, residence times in a vessel, and gas
-// under gravity.
+// Walls that reflect by the cosine law. Tests the transmission of tubes, chords in a sphere, residence times in a
+// vessel, and gas under gravity.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ Material lambert() {
     return material;
 }
 
-/// Walls of one material without forces.
+/// Walls of one material, in a scene without forces.
 struct Vessel {
     Vessel(std::vector<ColliderDescription> colliders, Material material)
         : world(std::move(colliders)),
@@ -48,7 +48,8 @@ struct Vessel {
     ExactResponse response;
 };
 
-/// Flies until is_out(position). Returns the particle at that time, and adds the path length inside to `way` if given.
+/// Moves the particle in flights of duration `stride` until is_out(position) is true. Returns the particle at that
+/// time.
 template <class IsOut>
 MovingParticle fly_out(const Vessel& vessel, MovingParticle particle, double stride, const IsOut& is_out) {
     MoveScratch scratch;
@@ -59,7 +60,7 @@ MovingParticle fly_out(const Vessel& vessel, MovingParticle particle, double str
     return particle;
 }
 
-/// Returns the sides of a prism of n faces along z, open at both ends.
+/// Returns the side faces of a prism along z with n sides, which is open at both ends.
 TriangleMesh open_tube(int n, double radius, double tube_length) {
     TriangleMesh mesh;
     for (int k = 0; k < n; ++k) {
@@ -89,7 +90,7 @@ Vec3 place_in_polygon(int n, double radius, RandomSequence& random) {
     }
 }
 
-/// Returns the fraction of molecules that pass a tube of L / R = ratio.
+/// Returns the fraction of molecules that pass through a tube with L / R = ratio.
 Sample transmission(double ratio, int sides, int molecules) {
     // The prism has the cross-sectional area of the circle.
     const double sector = 2.0 * kPi / sides;
@@ -125,8 +126,8 @@ INSTANTIATE_TEST_SUITE_P(Ratios, ClausingTube,
                              return "LOverR" + std::to_string(static_cast<int>(10.0 * row.param.ratio)) + "Tenths";
                          });
 
-// A prism of n sides with the area of the circle differs from the tube by the order of (pi / n)^2. Its perimeter is
-// longer by (pi / n)^2 / 3. The transmission of a longer tube falls at most in proportion to that.
+// The tube is a prism of n sides with the cross-sectional area of the circle. Its perimeter is longer by the relative
+// amount (pi / n)^2 / 3. The transmission is smaller at most by the same relative amount.
 TEST_P(ClausingTube, PassesTheFractionOfTheIntegralEquation) {
     constexpr int kSides = 256;
     const int molecules = test::is_long_run() ? 1000000 : test::scaled(8000);
@@ -135,8 +136,8 @@ TEST_P(ClausingTube, PassesTheFractionOfTheIntegralEquation) {
     EXPECT_NEAR(sample.mean(), GetParam().transmission, 3.0 * sample.error() + faceting);
 }
 
-// Every hit in a sphere with cosine-law walls is uniform over the sphere and independent of the previous one. The
-// squared chord is uniform in [0, 4 R^2].
+// In a sphere with cosine-law walls, every hit is uniform over the sphere and independent of the previous hit. The
+// square of the chord length is uniform in [0, 4 R^2].
 TEST(LambertSphere, HitsUniformlyAndIndependentlyOfTheLastHit) {
     const Vessel vessel({{"ball", BallShape{1.0, {}}, 0}}, lambert());
     Sample chord;
@@ -168,10 +169,11 @@ TEST(LambertSphere, HitsUniformlyAndIndependentlyOfTheLastHit) {
     double chi_squared = 0.0;
     const double expected = static_cast<double>(chord.count()) / 20.0;
     for (const double bin : bins) chi_squared += (bin - expected) * (bin - expected) / expected;
-    EXPECT_LT(chi_squared, 50.8);  // 19 degrees of freedom, exceeded once in 10^4
+    EXPECT_LT(chi_squared, 50.8);  // chi-square limit for 19 degrees of freedom, which random data exceed once in 10^4
+                                   // cases
 }
 
-/// Returns the unit cube [0, 1]^3 without the square |x - 1/2|, |y - 1/2| < half of its bottom.
+/// Returns the unit cube [0, 1]^3 with a square hole |x - 1/2|, |y - 1/2| < half in its bottom.
 TriangleMesh cube_with_a_hole(double half) {
     TriangleMesh mesh = {
         {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
@@ -187,8 +189,8 @@ TriangleMesh cube_with_a_hole(double half) {
     return mesh;
 }
 
-// A molecule that enters a vessel by the cosine law through an opening of area A travels 4 V / A inside on average, for
-// any walls (the mean chord theorem with reflections). The time constant of effusion is 4 V / (A v).
+// A molecule enters a vessel through an opening of area A, with the cosine law. By the mean chord theorem with
+// reflections, its mean path length inside is 4 V / A, for any walls. The time constant of effusion is 4 V / (A v).
 TEST(Effusion, KeepsAMoleculeInsideForFourVolumesOverTheOpening) {
     const double half = 0.25;
     const double area = 4.0 * half * half;
@@ -204,14 +206,15 @@ TEST(Effusion, KeepsAMoleculeInsideForFourVolumesOverTheOpening) {
                 {place, cosine_direction({0, 0, 1}, random), 1.0, 0.0, 0.0}, {}, static_cast<std::uint64_t>(i), 0};
             const auto is_out = [](const Vec3& p) { return p.z < 0.0; };
             const MovingParticle out = fly_out(vessel, start, 0.5, is_out);
-            // It flies on in a straight line once it is out.
+            // The molecule flies straight after it has left the vessel, so the path outside can be subtracted.
             translation.add(out.state.time + out.state.position.z / std::fabs(out.state.velocity.z));
         }
         EXPECT_NEAR(translation.mean(), 4.0 / area, 4.0 * translation.error());
     }
 }
 
-// The floor reflects molecules diffusely at temperature T. Their heights are exponential with mean k T / (m g).
+// The floor reflects molecules diffusely at temperature T. The heights of the molecules have an exponential
+// distribution with mean k T / (m g).
 TEST(GasUnderGravity, HasTheBarometricProfileOverADiffuseFloor) {
     constexpr double kBoltzmann = 1.380649e-23;
     constexpr double kTemperature = 300.0;
@@ -232,7 +235,7 @@ TEST(GasUnderGravity, HasTheBarometricProfileOverADiffuseFloor) {
     for (int i = 0; i < test::scaled(4000); ++i) {
         RandomSequence random(6, 0, static_cast<std::uint64_t>(i));
         MovingParticle molecule{{{0, 0, 1e-12}, {0, 0, 1}, kMass, 0.0, 0.0}, {}, static_cast<std::uint64_t>(i), 0};
-        (void)response.move(molecule, 20.0, scratch);  // makes the state independent of the start
+        (void)response.move(molecule, 20.0, scratch);  // a first flight makes the state independent of the start
         double sum = 0.0;
         double above = 0.0;
         for (int k = 0; k < 30; ++k) {

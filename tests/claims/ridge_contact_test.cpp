@@ -1,4 +1,4 @@
-// A sphere that rolls along a ridge, and for a while over onto one of its faces, does not overlap that face, even if an
+// A sphere rolls along a ridge and temporarily over one of its faces. The sphere does not overlap this face, even if an
 // obstacle stops it there.
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace RICOCHET_FILE {
 constexpr double kSlope = 20.0;  // in degrees, of both faces
 constexpr double kRadius = 1.0;
 
-/// Returns two faces that fall off to both sides of the ridge y = z = 0.
+/// Returns two faces that descend to both sides of the ridge y = z = 0.
 ColliderDescription ridge() {
     const double drop = -20.0 * std::tan(radians(kSlope));
     TriangleMesh mesh;
@@ -27,8 +27,8 @@ ColliderDescription ridge() {
     return mesh_collider(mesh);
 }
 
-/// Returns a sphere on the ridge, close to the limit of support by the edge, that moves over the face with y > 0.
-/// Gravity pulls it back at 1.3 m/s^2, so it is over the face until 2 `speed` / 1.3 s.
+/// Returns a sphere on the ridge that moves over the face with y > 0. The sphere is close to the limit at which the
+/// edge supports it. Gravity pulls it back at 1.3 m/s^2, so it is over the face until the time 2 `speed` / 1.3, in s.
 ContactScene over_and_back(double speed) {
     const double s = std::sin(radians(kSlope) - 1e-4);
     const double c = std::cos(radians(kSlope) - 1e-4);
@@ -41,7 +41,7 @@ ContactScene over_and_back(double speed) {
     return scene;
 }
 
-/// Expects that at the end of the scene the sphere overlaps the ridge by no more than rounding.
+/// Expects that the sphere does not overlap the ridge at the end of the scene, up to rounding.
 void expect_free_at_end(const ContactScene& scene) {
     const Particle end = end_of(scene);
     const auto nearest = CollisionQueries({ridge()}).closest_point(end.position, 2.0 * kRadius);
@@ -69,7 +69,7 @@ TEST(ARidge, IsNotOverlappedIfAWallStopsASphereOverAFace) {
             scene.colliders.push_back(plane_collider({2.0 * wall + kRadius, 0, 0}, {-1, 0, 0}));
             scene.materials.push_back(scene.materials[0]);
             scene.time_step = scene.duration = 4.0 * speed / 1.3;
-            // The step before the end is checked too, because the path along the wall starts at the impact.
+            // The state shortly after the impact is checked too, because the path along the wall starts there.
             for (const double until : {1.001 * wall, scene.duration}) {
                 scene.duration = until;
                 SCOPED_TRACE(::testing::Message() << speed << " m/s, wall at " << part << ", until " << until << " s");
@@ -79,8 +79,8 @@ TEST(ARidge, IsNotOverlappedIfAWallStopsASphereOverAFace) {
     }
 }
 
-/// Returns a sphere on a ridge with two different slopes, pushed along it and over it, with a wall ahead. Half of the
-/// spheres start almost over a face.
+/// Returns a sphere on a ridge with two different slopes. The sphere is pushed along and across the ridge, towards a
+/// wall. Half of the spheres start almost over a face.
 SimulationSetup random_ridge(std::uint64_t seed) {
     RandomSequence random(77, 1, seed);
     const auto around = [&](double half) { return random.uniform_around(0, half); };

@@ -1,5 +1,5 @@
-// Momentum and angular momentum in persistent contact with bodies and with colliders of prescribed motion. In every
-// step their gain equals the loss of the particles.
+// Momentum and angular momentum in persistent contact with dynamic bodies and with colliders of prescribed motion. In
+// every step, the gain of the bodies and colliders equals the loss of the particles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,10 +17,10 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-/// Momenta of all particles, as solid spheres, and bodies.
+/// Momenta of all bodies and particles. Particles have the inertia of solid spheres.
 struct Momenta {
     Vec3 linear;
-    Vec3 angular;        ///< about the origin, with spin
+    Vec3 angular;        ///< about the origin, including spin
     double scale = 0.0;  ///< sum of magnitudes, in kg m/s
 };
 
@@ -50,7 +50,7 @@ BodyDescription body_in(const std::string& frame, double mass, double inertia, J
     return body;
 }
 
-/// Returns a particle at a random position in a box, with its own velocity in a rotating frame.
+/// Returns a particle at a random position in a box, with a random velocity.
 Particle somewhere(RandomSequence& random, const Vec3& half, double radius) {
     Vec3 place;
     for (int axis = 0; axis < 3; ++axis) place[axis] = (2.0 * random.uniform() - 1.0) * half[axis];
@@ -95,7 +95,8 @@ TEST(WhatRidesInATumblingBody, ConservesTheTotalMomentumAndAngularMomentumInEver
     }
 }
 
-// Gravity along the axis has no moment about it. Only the particles that slide over a hinged table turn it.
+// Gravity is along the hinge axis of a table and has no moment about it. Only the particles that slide over the table
+// turn it.
 TEST(WhatSlidesOverATurntable, TransfersItsAngularMomentumToIt) {
     for (const double radius : {0.0, 0.05}) {
         SCOPED_TRACE(radius);
@@ -128,7 +129,8 @@ TEST(WhatSlidesOverATurntable, TransfersItsAngularMomentumToIt) {
     }
 }
 
-// On a table with prescribed rotation, the recorded moment about the axis must equal the loss of the particles.
+// On a table with prescribed rotation, the recorded moment about the axis must equal the loss of the particles' angular
+// momentum.
 TEST(TheMomentOfContactThatLasts, IsRecordedAboutTheAxisOfATurningTable) {
     for (const double radius : {0.0, 0.05}) {
         SCOPED_TRACE(radius);

@@ -1,5 +1,5 @@
-// A closed collider in rigid motion always has space for the particles in it. None ends up outside, and none is
-// stalled. This also holds if its walls are closer together than the rounding of the world's coordinates.
+// A closed collider in rigid motion always has space for the particles in it. No particle gets outside, and no particle
+// is stalled. This also holds if the walls are closer together than the rounding of world coordinates.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,8 +29,8 @@ TriangleMesh needle(double height) {
 
 MeshShape shape_of(const TriangleMesh& mesh) { return {std::make_shared<const TriangleMesh>(mesh), {}, "", {}}; }
 
-/// Runs to the end. Expects after each step that all particles are inside the first collider, a mesh, and that none is
-/// stalled.
+/// Runs to the end. Expects after each step that all particles are inside the first collider, which is a mesh, and that
+/// none is stalled.
 void expect_all_inside(Simulation& simulation, const TriangleMesh& mesh) {
     while (!simulation.finished()) {
         simulation.step();
@@ -45,7 +45,8 @@ void expect_all_inside(Simulation& simulation, const TriangleMesh& mesh) {
     EXPECT_EQ(simulation.statistics().frozen, 0U);
 }
 
-/// Returns a needle at rest while particles run into its tip. It is then carried far away and rotated.
+/// Returns a needle that is first at rest, while particles move into its tip. Afterwards the needle moves far away and
+/// rotates.
 SimulationSetup flung_needle(const TriangleMesh& mesh, double far, double restitution, double time_step) {
     auto setup = setup_of({frame_of("needle", motions_through({{0.0, {}, {0, 0, 1}, 0.0},
                                                                {0.4, {}, {0, 0, 1}, 0.0},
@@ -77,7 +78,7 @@ TEST(ParticlesInTheTipOfANeedle, StayInItOnAnyDisplacement) {
     }
 }
 
-/// A needle of random shape on a random path, with three points and a sphere in it.
+/// A scene with a needle of random shape on a random path, with three points and a sphere in it.
 struct NeedleScene {
     TriangleMesh mesh;
     double radius = 0.0;  ///< radius of the sphere, which is the last particle, in m
@@ -117,7 +118,7 @@ TEST(ParticlesInANeedle, StayInItOnAnyPath) {
 }
 
 // The tip of a needle presses a sphere against three walls for many steps. The overlap with a wall must not grow with
-// each impact on another wall. In the first four needles it once exceeded the tolerance of the verifier.
+// each impact on another wall. In the first four needles, the overlap once exceeded the tolerance of the verifier.
 TEST(SphereInTheTipOfANeedle, DoesNotSinkIn) {
     for (const std::uint64_t seed : {36, 1145, 1555, 2477, 20, 39, 51, 64, 196}) {
         SCOPED_TRACE(seed);
@@ -135,7 +136,7 @@ TEST(SphereInTheTipOfANeedle, DoesNotSinkIn) {
     }
 }
 
-/// Returns a needle of 10 kg. Points and a sphere of 0.1 kg fly into its tip at 20 m/s and push it.
+/// Returns a needle of 10 kg. Points and a sphere of 0.1 kg each fly into its tip at 20 m/s and push it.
 SimulationSetup pushed_needle(const TriangleMesh& mesh, JointKind joint, double far, double restitution) {
     FrameDescription frame = frame_of("body", {}, {far, -far, 0.5 * far});
     frame.is_driven = true;
@@ -162,8 +163,8 @@ SimulationSetup pushed_needle(const TriangleMesh& mesh, JointKind joint, double 
     return setup;
 }
 
-// A step with a dynamic body is planned in substeps. A particle follows the body until the end of its substep, because
-// the later path of the body is not known yet.
+// A step with a dynamic body is divided into substeps. A particle follows the body only until the end of the substep,
+// because the later path of the body is not known yet.
 TEST(ParticlesInABody, StayInIt) {
     const TriangleMesh mesh = needle(6.0);
     for (const JointKind joint : {JointKind::free, JointKind::hinge, JointKind::slider}) {

@@ -1,5 +1,5 @@
-// Contact whose velocities are rounding errors of larger ones: on uniformly moving floors, and at edges reached by both
-// walls at once.
+// Contact with relative velocities that are only rounding errors of larger velocities. The cases are uniformly moving
+// floors, and particles that reach both walls of an edge at the same time.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -55,7 +55,7 @@ TEST(AnEdgeOfTwoWalls, ReversesAParticleThatSlidesIntoIt) {
     }
 }
 
-// The same edge belongs to a dynamic body that is so heavy that it practically stays at rest.
+// The same edge belongs to a dynamic body, which is so heavy that it practically stays at rest.
 TEST(AnEdgeOfTwoWalls, ReversesAParticleInADynamicBody) {
     const Vec3 velocity{1.412990398168904, 1.8622771070860458, 0.0};
     for (int k = 0; k < 60; ++k) {
@@ -84,13 +84,13 @@ TEST(AnEdgeOfTwoWalls, ReversesAParticleInADynamicBody) {
     }
 }
 
-// Slow rebounds occur off one wall of a narrow wedge, beside impacts on the other. A wall that the particle leaves must
-// not support it, and each wall gives the rebound of its material.
+// In a narrow wedge, a particle rebounds slowly from one wall while it hits the other wall. A wall that the particle
+// leaves must not support it. Each impact must have the restitution of the hit wall's material.
 TEST(ANarrowWedge, GivesEachImpactTheReboundOfItsMaterial) {
     for (int seed = 0; seed < test::scaled(40); ++seed) {
         SCOPED_TRACE(seed);
         RandomSequence random(static_cast<std::uint64_t>(seed), 17, 0);
-        const double slope = 0.003 + 0.02 * random.uniform();  // of the upper wall
+        const double slope = 0.003 + 0.02 * random.uniform();  // slope of the upper wall
         const Vec3 upper = normalized(Vec3{-slope, 0, -1});
         auto setup = setup_of({}, {{"lower", PlaneShape{{}, {0, 0, 1}}}, {"upper", PlaneShape{{}, upper}}}, 0.02, 2.0);
         setup.materials = {{"", 0.6 + 0.35 * random.uniform(), 0.4 * random.uniform()}};

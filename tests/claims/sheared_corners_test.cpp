@@ -1,6 +1,7 @@
 // Particles that slide in the edges and corners of a sheared mesh lose no simulated time.
 //
-// The faces of an edge meet at a changing angle. A path that is lifted off one of them must not lead into the other.
+// The angle between the faces at an edge changes. If a path is lifted off one face, it must not lead into the other
+// face.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -21,7 +22,7 @@ namespace RICOCHET_FILE {
 
 constexpr double kDuration = 0.44;  // in s
 
-/// Returns the vertices under a random linear map close to the identity, which keeps all faces plane.
+/// Transforms the vertices by a random linear map close to the identity. All faces stay planar.
 std::vector<Vec3> sheared(const std::vector<Vec3>& vertices, RandomSequence& random) {
     const Vec3 x = Vec3{1, 0, 0} + 0.3 * random.in_unit_ball();
     const Vec3 y = Vec3{0, 1, 0} + 0.3 * random.in_unit_ball();

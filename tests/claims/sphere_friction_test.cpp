@@ -1,4 +1,4 @@
-// A solid sphere with Coulomb friction sticks or slips in an impact as in the closed form, and rolls afterwards.
+// A solid sphere with Coulomb friction sticks or slips in an impact as the closed form predicts, and rolls afterwards.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,8 +27,8 @@ INSTANTIATE_TEST_SUITE_P(Materials, ObliqueImpact, ::testing::Values(Pair{0.5, 0
                                     std::to_string(static_cast<int>(std::lround(10.0 * pair.param.friction)));
                          });
 
-/// Returns a sphere without spin after its impact on a meshed floor. It arrives at unit speed, at `degrees` from the
-/// normal.
+/// Returns the state of a sphere after its impact on a meshed floor. The sphere arrives without spin at unit speed, at
+/// an angle of `degrees` from the normal.
 MovingParticle after_impact(const Pair& pair, double degrees) {
     Course course({testing::mesh_collider(testing::floor_mesh(4.0, 8))}, {"", pair.restitution, pair.friction}, {});
     const double angle = degrees * kPi / 180.0;
@@ -39,7 +39,7 @@ MovingParticle after_impact(const Pair& pair, double degrees) {
     return sphere;
 }
 
-// A solid sphere sticks while tan(theta) < 7/2 mu (1 + e). It then rolls at 5/7 of the tangential speed.
+// A solid sphere sticks in the impact if tan(theta) < 7/2 mu (1 + e). It then rolls at 5/7 of the tangential speed.
 TEST_P(ObliqueImpact, SticksBelowTheLimitAngle) {
     const Pair& pair = GetParam();
     const double limit = std::atan(3.5 * pair.friction * (1.0 + pair.restitution)) * 180.0 / kPi;
@@ -48,7 +48,8 @@ TEST_P(ObliqueImpact, SticksBelowTheLimitAngle) {
         const MovingParticle after = after_impact(pair, degrees);
         const double tangential = std::sin(degrees * kPi / 180.0);
         EXPECT_NEAR(after.state.velocity.x, 5.0 / 7.0 * tangential, 1e-14);
-        EXPECT_NEAR(after.spin.y, 5.0 / 7.0 * tangential / kRadius, 1e-12);  // rolls towards +x about +y
+        EXPECT_NEAR(after.spin.y, 5.0 / 7.0 * tangential / kRadius, 1e-12);  // rolling towards +x is a rotation about
+                                                                             // +y
         EXPECT_EQ(after.spin.x, 0.0);
         EXPECT_EQ(after.spin.z, 0.0);
     }

@@ -35,8 +35,8 @@ double distance_from(const TriangleMesh& mesh, const Vec3& p) {
     return std::sqrt(nearest);
 }
 
-/// Returns particles inside the body and more than their radius away from its surface. The particles use the three
-/// radii in turn.
+/// Returns particles inside the body that are more than their radius away from its surface. The radii of successive
+/// particles cycle through `radii`.
 std::vector<Particle> gas_in(const TriangleMesh& mesh, const std::vector<double>& radii, int count, double speed) {
     const testing::ParityOracle oracle(mesh);
     const Box3 box = bounds(mesh);
@@ -105,8 +105,8 @@ TEST(SphereGasInACrumpledBall, NeitherLeaksNorOverlaps) {
     expect_no_violation(gas_setup(std::move(mesh), {0.0, 0.01, 0.05, 0.15}));
 }
 
-// In a tetrahedron with an inner radius slightly above that of the largest sphere, the corners are much narrower than
-// the sphere.
+// The radius of the tetrahedron's inscribed sphere is slightly larger than the radius of the largest sphere. Its
+// corners are much narrower than this sphere.
 TEST(SphereGasInATetrahedron, StaysOutOfCornersNarrowerThanASphere) {
     const TriangleMesh mesh{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}},
                             {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}};
@@ -115,7 +115,8 @@ TEST(SphereGasInATetrahedron, StaysOutOfCornersNarrowerThanASphere) {
     expect_no_violation(gas_setup(mesh, {0.1 * inner / size, 0.6 * inner / size, 0.97 * inner / size}));
 }
 
-// A sphere is in a box between plates with a gap one nanometre wider than it. Every bounce is a double one.
+// A sphere is in a box between two plates. The gap between the plates is one nanometre wider than the sphere. Every
+// bounce hits both plates.
 TEST(SphereBetweenPlates, WithANanometreOfClearanceNeitherLeaksNorOverlaps) {
     constexpr double kRadius = 0.05;
     SimulationSetup setup;

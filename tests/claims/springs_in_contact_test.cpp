@@ -1,5 +1,5 @@
-// Springs between particles that slide, rest and roll. In every step the momentum gain of one end equals the loss of
-// the other, in flight and in contact. Known closed forms are reproduced.
+// Springs between particles that slide, rest and roll. In every step, one end of a spring gains the momentum that the
+// other end loses, in flight and in contact. Other tests compare with closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,14 +28,15 @@ std::vector<IntegratorKind> higher_methods() {
 
 struct Answer {
     ResponseKind kind;
-    bool global = false;  ///< rollback restores the whole system
+    bool global = false;  ///< true if rollback restores the whole system
 };
 constexpr Answer kExact{ResponseKind::exact};
 constexpr Answer kAnswers[] = {
     kExact, {ResponseKind::rollback}, {ResponseKind::rollback, true}, {ResponseKind::project}, {ResponseKind::penalty}};
 
-/// Returns false for a method of variable steps with the penalty response or the global rollback. The penalty response
-/// has its own substeps and the global rollback steps all particles together, so both refuse such methods.
+/// Returns false if the response refuses the method. The penalty response and the global rollback refuse methods with
+/// variable steps. Reason: the penalty response has its own sub-steps, and the global rollback steps all particles
+/// together.
 bool go_together(IntegratorKind kind, const Answer& answer) {
     return kind != IntegratorKind::dormand_prince || !(answer.kind == ResponseKind::penalty || answer.global);
 }
@@ -64,7 +65,7 @@ SimulationSetup floor_with(double friction) {
     return setup;
 }
 
-/// Returns six points in a row that slides along itself. moved: displacement of every other point, in m.
+/// Returns a row of six points that slides in its own direction. moved: displacement of every second point, in m.
 SimulationSetup sliding_row(double stiffness, double damping, double moved) {
     SimulationSetup setup = floor_with(0.3);
     for (std::uint64_t i = 0; i < 6; ++i) {
@@ -75,8 +76,8 @@ SimulationSetup sliding_row(double stiffness, double damping, double moved) {
     return setup;
 }
 
-/// Returns two masses above each other, the lower one on the floor. The spring has its length under the weight of the
-/// upper mass.
+/// Returns two masses above each other, the lower one on the floor. The spring starts at its equilibrium length under
+/// the weight of the upper mass.
 SimulationSetup column(double stiffness, double damping) {
     SimulationSetup setup = floor_with(0.5);
     setup.particles = {point({}, {}, 1.0), point({0, 0, 0.3}, {}, 1.0)};
@@ -104,7 +105,8 @@ Vec3 momentum(const Simulation& run) {
     return sum;
 }
 
-/// Returns the largest violation of momentum conservation in a step of the run, in N s. The weight is in kg.
+/// Returns the largest violation of momentum conservation in a step of the run, in N s. weight: sum of the masses on
+/// which gravity acts, in kg.
 double largest_gap(Simulation run, double weight, double step) {
     double largest = 0.0;
     Vec3 before = momentum(run) + given_to_floor(run);
@@ -129,7 +131,8 @@ TEST(SpringsInContact, ConserveMomentumInEveryStepOfASlidingRow) {
     }
 }
 
-// In the smallest case one particle slides, the other flies, and only the sliding one has weight.
+// This is the smallest case. One particle slides, the other particle flies, and gravity acts only on the sliding
+// particle.
 TEST(SpringsInContact, ConserveMomentumBetweenASlidingAndAFlyingParticle) {
     for (const IntegratorKind kind : explicit_methods()) {
         for (const Answer& answer : kAnswers) {
@@ -147,8 +150,8 @@ TEST(SpringsInContact, ConserveMomentumBetweenASlidingAndAFlyingParticle) {
     }
 }
 
-// The spheres of a net land, slide, roll and lift off. Friction changes its direction as a slip ends. The remaining
-// slip near zero speed also belongs to friction.
+// The spheres of a net land, slide, roll and lift off. Friction changes its direction when a slip ends. The momentum of
+// the last slip near zero speed must be part of the friction impulse.
 TEST(SpringsInContact, ConserveMomentumOfANetThatFallsOnTheFloor) {
     for (const IntegratorKind kind : explicit_methods()) {
         for (const double damping : {0.0, 0.05}) {
@@ -168,11 +171,13 @@ TEST(SpringsInContact, ConserveMomentumOfANetThatFallsOnTheFloor) {
     }
 }
 
-// The distance is v^2 / (2 mu g). Friction decelerates all particles equally, so springs at rest length have no effect.
+// The sliding distance is v^2 / (2 mu g). Friction decelerates all particles equally, so springs at their rest length
+// have no effect.
 TEST(SpringsInContact, DoNotChangeTheSlidingDistanceOfARow) {
     const double closed = 9.0 / (2.0 * 0.3 * kGravity);
     for (const IntegratorKind kind : higher_methods()) {
-        // The error of an adaptive method can be its tolerance, 1e-6 m, in each of the substeps that end the slide.
+        // An adaptive method can have an error of its tolerance, 1e-6 m, in each of the sub-steps at the end of the
+        // slide.
         const double error = kind == IntegratorKind::dormand_prince ? 1e-5 : 1e-6;
         for (const double step : {1e-3, 4e-3}) {
             Simulation run = made(sliding_row(1000.0, 1.0, 0.0), kind, kExact, step, 1.5);
@@ -220,8 +225,8 @@ TEST(SpringsInContact, SupportAColumnAtRest) {
     }
 }
 
-// Forward Euler starts without its forces: n steps of h from rest lead down by g h^2 n (n - 1) / 2. The velocity gain
-// from gravity in the first step is not a sign of divergence.
+// With forward Euler, the first step from rest does not move the particles. After n steps of h they have fallen by g
+// h^2 n (n - 1) / 2. The velocity gain by gravity in the first step must not count as divergence.
 TEST(SpringsThatFall, MayFallFromRestByForwardEuler) {
     SimulationSetup setup;
     setup.forces.push_back(make_gravity({0, 0, -kGravity}));

@@ -1,5 +1,5 @@
-// Springs in whole simulations: closed forms, collisions, detection of divergence, and the same bits for any number of
-// threads.
+// Springs in whole simulations. Tests closed forms, collisions, detection of divergence, and equal bits for any number
+// of threads.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,8 +26,8 @@ Particle particle_at(const Vec3& x, double mass = 1.0, const Vec3& v = {}) {
     return particle;
 }
 
-/// Returns a hanging chain of `nodes` particles with both ends pinned `span` apart, with the given total length and
-/// mass.
+/// Returns a hanging chain of `nodes` particles with the given total length and mass. Both ends are pinned at a
+/// distance of `span`.
 SimulationSetup hanging_chain(int nodes, double span, double chain_length, double mass) {
     SimulationSetup setup;
     const int links = nodes - 1;
@@ -45,8 +45,8 @@ SimulationSetup hanging_chain(int nodes, double span, double chain_length, doubl
     return setup;
 }
 
-/// Returns the parameter a of the catenary of length s between two points of the same height, d apart: 2 a sinh(d / 2a)
-/// = s.
+/// Returns the parameter a of a catenary of length s between two points of equal height at a distance d. It solves 2 a
+/// sinh(d / 2a) = s.
 double catenary_parameter(double d, double s) {
     double low = 1e-3 * d;
     double high = 1e3 * d;
@@ -124,7 +124,7 @@ TEST(Springs, StableRunsAreNotStopped) {
                                       IntegratorKind::rk4, IntegratorKind::implicit_euler}) {
         SimulationSetup setup;
         setup.particles = {particle_at({0, 0, 0}), particle_at({1, 0, 0})};
-        setup.springs.push_back({0, 1, 1.0, 100.0, 0.0});  // at rest
+        setup.springs.push_back({0, 1, 1.0, 100.0, 0.0});  // the spring is at its rest length
         setup.options.integrator = kind;
         setup.options.time_step = 0.02;
         setup.options.duration = 20.0;
@@ -134,7 +134,7 @@ TEST(Springs, StableRunsAreNotStopped) {
     }
 }
 
-/// Returns a dumb-bell, two spheres on a spring, thrown at a floor.
+/// Returns dumb-bells that are thrown at a floor. Each is two spheres joined by a spring.
 SimulationSetup dumbbells(IntegratorKind kind) {
     SimulationSetup setup;
     setup.options.integrator = kind;
@@ -186,7 +186,7 @@ TEST(Springs, GiveTheSameBitsForAnyThreadCount) {
     }
 }
 
-/// Returns the height of a vertical pair after one bounce.
+/// Returns the height of a vertical pair of particles on a spring after one bounce.
 double height_after_bounce(IntegratorKind kind, int steps) {
     SimulationSetup setup;
     setup.options.integrator = kind;
@@ -206,8 +206,8 @@ TEST(Springs, ABounceHasAtLeastFirstOrder) {
     const double reference = height_after_bounce(IntegratorKind::rk4, 400000);
     for (const IntegratorKind kind : {IntegratorKind::symplectic_euler, IntegratorKind::velocity_verlet,
                                       IntegratorKind::midpoint, IntegratorKind::rk4, IntegratorKind::implicit_euler}) {
-        // The error depends on the time of the bounce within its step, so the mean over several numbers of steps is
-        // compared.
+        // The error depends on the time of the bounce within its step. The test therefore compares means over several
+        // numbers of steps.
         const auto error = [&](int steps) {
             double sum = 0.0;
             for (int k = 0; k < 8; ++k) sum += std::fabs(height_after_bounce(kind, steps + 7 * k) - reference);

@@ -1,4 +1,4 @@
-// Particles hit meshes with changing scale at their exact positions, and never pass through.
+// Particles hit meshes with changing scale at the exact position of the surface, and never pass through.
 //
 // A long run has many more particles and steps.
 #include <gtest/gtest.h>
@@ -27,7 +27,8 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-/// Returns a mesh in the last of a chain of frames, each attached to the previous one, until a time.
+/// Returns a mesh that moves with the last frame of a chain up to the time `end`. Each frame of the chain is the parent
+/// of the next.
 MeshShape stretching(const TriangleMesh& mesh, std::vector<FrameDescription> chain, double end) {
     for (std::size_t k = 0; k < chain.size(); ++k) {
         chain[k].name = std::to_string(k);
@@ -65,7 +66,8 @@ void expect_sound(const Simulation& simulation) {
     EXPECT_EQ(statistics.unsimulated_time, 0.0);
 }
 
-/// Ball of a radius that moves along one axis between walls at -(1 + u t) and 1 + u t, and hits them elastically.
+/// Closed form of a ball that moves along one axis and hits two walls elastically. The walls are at -(1 + u t) and 1 +
+/// u t.
 struct Bouncer {
     double position;
     double velocity;
@@ -74,7 +76,7 @@ struct Bouncer {
     double time = 0.0;
     std::vector<double> hits{};
 
-    /// Advances to the next hit, or to an end.
+    /// Advances from impact to impact up to the time `end`.
     void advance(double end) {
         while (time < end) {
             const double side = velocity > 0.0 ? 1.0 : -1.0;
@@ -94,7 +96,8 @@ struct Bouncer {
     }
 };
 
-// Elastic moving walls change one velocity component at a time, so three closed forms apply at once.
+// Each elastic moving wall changes only one velocity component. The three components therefore follow independent
+// closed forms.
 TEST(AMeshBoxWhoseScaleChanges, ReflectsParticlesAccordingToTheMotionOfItsWalls) {
     const Vec3 start{0.2, -0.1, 0.3};
     const Vec3 velocity{2.3, 1.7, -2.9};
@@ -141,8 +144,8 @@ TEST(AMeshBoxWhoseScaleChanges, ReflectsParticlesAccordingToTheMotionOfItsWalls)
     }
 }
 
-/// Particle that falls on the upper side of a box. The box is in a frame rotated by a quarter turn, inside a frame that
-/// grows at the given rates from (0, 0, 1).
+/// A scene with a particle that falls on the upper side of a box. The box is in a frame rotated by a quarter turn. The
+/// parent of this frame is at (0, 0, 1) and grows at the given rates.
 struct Growing {
     Vec3 rates{0.3, -0.2, 0.4};
     Vec3 place{0.5, 0.25, 0.7};  // position of the box in the growing frame
@@ -184,14 +187,15 @@ TEST(ABoxInAChainOfScaledFrames, IsHitAtItsExactSideAndReflectsWithTwiceItsSpeed
         }
         ASSERT_EQ(records.size(), 1U);
         EXPECT_NEAR(records[0].time, growing.time(radius), 1e-14);
-        const double speed = growing.rates.z * 1.2;  // speed of the side, whose height in the growing frame is 1.2 m
+        const double speed = growing.rates.z * 1.2;  // speed of the upper side, whose height in the growing frame is
+                                                     // 1.2 m
         EXPECT_LT(length(records[0].velocity_after - Vec3{0, 0, 2.0 * speed + 2.0}), 1e-13);
         expect_sound(simulation);
     }
 }
 
-// Without rebound and with full friction, the particle gets the velocity of the point of impact. That is the rate of
-// the scale times the position of the point in the growing frame.
+// Without rebound and with sufficient friction, the particle gets the velocity of the surface point that it hits. This
+// velocity is the rate of the scale times the position of the point in the growing frame.
 TEST(ABoxInAChainOfScaledFrames, GivesAStickingParticleTheVelocityOfThePointOfImpact) {
     const Growing growing;
     Simulation simulation(growing.setup({"", 0.0, 1e3}, 0.0));
@@ -205,7 +209,7 @@ TEST(ABoxInAChainOfScaledFrames, GivesAStickingParticleTheVelocityOfThePointOfIm
     const Vec3 rates = growing.rates;
     const Vec3 expected{rates.x * 0.8 / (1.0 + rates.x * time), rates.y * 0.1 / (1.0 + rates.y * time), rates.z * 1.2};
     EXPECT_LT(length(records[0].velocity_after - expected), 1e-13);
-    // The particle continues with that point.
+    // Afterwards the particle moves with this surface point.
     while (!simulation.finished()) simulation.step();
     const Vec3 start{0.8 / (1.0 + rates.x * time), 0.1 / (1.0 + rates.y * time), 1.2};
     const Vec3 end = Vec3{0, 0, 1} + start + Vec3{rates.x * start.x, rates.y * start.y, rates.z * start.z};
@@ -213,7 +217,8 @@ TEST(ABoxInAChainOfScaledFrames, GivesAStickingParticleTheVelocityOfThePointOfIm
     expect_sound(simulation);
 }
 
-/// Returns spheres in a mesh that grows and rotates, in one frame or in two.
+/// Returns spheres in a mesh that grows and rotates. One frame describes both motions, or two frames describe one
+/// motion each.
 SimulationSetup turning_gas(bool in_two) {
     SimulationSetup setup = setup_of(0.01, 1.0, {"", 0.8, 0.2});
     const KeyedScale growth{KeyedCurve<Vec3>({{0.0, {1, 1, 1}}, {2.0, {1.4, 1.4, 1.4}}})};
@@ -244,7 +249,7 @@ std::vector<ContactRecord> first_impacts(SimulationSetup setup) {
     return first;
 }
 
-// A uniform scale and a rotation about the same axis commute.
+// A uniform scale commutes with a rotation about the same origin, so both descriptions are equivalent.
 TEST(AMeshInAChainOfScaledFrames, IsHitAsInOneFrameWithTheCombinedMotion) {
     const std::vector<ContactRecord> chained = first_impacts(turning_gas(true));
     const std::vector<ContactRecord> single = first_impacts(turning_gas(false));
@@ -267,7 +272,8 @@ std::string refusal(const Call& call) {
     return "";
 }
 
-// Deformation requires stretched_motion(), and emitted particles keep their size.
+// A collider in a scaled frame must be converted to a deforming mesh by stretched_motion(). An emitter is refused,
+// because emitted particles keep their size.
 TEST(WhatStandsInAScaledFrame, CannotBeAColliderOrAnEmitter) {
     FrameDescription frame = frame_with({KeyedScale{KeyedCurve<Vec3>({{0.0, {1, 1, 1}}, {1.0, {2, 2, 2}}})}});
     frame.name = "lung";
@@ -290,7 +296,8 @@ TEST(WhatStandsInAScaledFrame, CannotBeAColliderOrAnEmitter) {
         std::string::npos);
 }
 
-/// Returns a gas in a mesh that squashes and stretches while it tumbles and oscillates, in a frame that breathes.
+/// Returns a gas in a mesh that squashes, stretches, tumbles and oscillates. The scale of the parent frame oscillates
+/// too.
 SimulationSetup squashed_gas(double duration, int count, double radius) {
     SimulationSetup setup = setup_of(0.01, duration, {"", 0.9, 0.3});
     setup.options.record_contacts = false;
@@ -351,7 +358,7 @@ SimulationSetup shaken_box(std::uint64_t seed, const Material& material) {
     return setup;
 }
 
-// The faces that support a particle in a corner turn during a contact interval.
+// While a particle slides in a corner, the supporting faces turn during a contact interval.
 TEST(AMeshWhoseScaleChanges, LosesNoTimeOfParticlesSlidingInItsCorners) {
     for (const Material& material : {Material{"", 0.0, 0.0}, Material{"", 0.0, 0.3}, Material{"", 0.3, 0.2}}) {
         for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(test::scaled(3)); ++seed) {
@@ -370,8 +377,8 @@ std::uint64_t hash_of(Simulation simulation) {
     return simulation.state_hash();
 }
 
-/// Returns a deforming mesh, a growing box, a box at rest and a spinning one, in the given order, with a gas and some
-/// rain on them.
+/// Returns a scene with a deforming mesh, a growing box, a box at rest and a spinning box, in the given order. A gas
+/// and some rain hit them.
 SimulationSetup mixed_setup(const std::vector<std::size_t>& order) {
     SimulationSetup setup = squashed_gas(0.4, 150, 0.03);
     setup.forces.push_back(make_gravity({0, 0, -9.81}));

@@ -1,4 +1,4 @@
-// Belts, turntables and drums carry particles as in the closed forms, while their geometry is at rest.
+// Belts, turntables and drums with a geometry at rest carry particles as the closed forms predict.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,13 +34,14 @@ ContactScene belt(const Vec3& u, double restitution, double friction, double rol
     return scene;
 }
 
-/// Returns a particle as seen from an observer with velocity u.
+/// Returns the particle with its velocity relative to an observer who moves with velocity u.
 Particle seen_from(Particle particle, const Vec3& u) {
     particle.velocity -= u;
     return particle;
 }
 
-// Friction depends on the slip only. An impact on a belt is an impact on a plane at rest, seen from the belt.
+// Friction depends only on the slip. For an observer on the belt, an impact on the belt is an impact on a plane at
+// rest.
 TEST(ABelt, ReflectsLikeAPlaneAtRestSeenFromTheBelt) {
     const Vec3 u{1.5, -0.5, 0};
     for (const double radius : {0.0, 0.1}) {
@@ -83,7 +84,7 @@ TEST(ABelt, AcceleratesAPointByFrictionUntilItIsCarried) {
     }
 }
 
-// A sphere without spin slips until it has 2/7 of the belt's speed. Then it rolls, and continues to roll.
+// A sphere without spin slips until it has 2/7 of the belt's speed. It then rolls at constant speed.
 TEST(ABelt, MakesASphereRollAtTwoSeventhsOfItsSpeed) {
     ContactScene scene = belt({3, 0, 0}, 0.0, 0.5);
     scene.particle = particle_of({0, 0, 0.2}, {}, 0.2);
@@ -93,7 +94,7 @@ TEST(ABelt, MakesASphereRollAtTwoSeventhsOfItsSpeed) {
     EXPECT_NEAR(end.spin.y * 0.2, 6.0 / 7.0 - 3.0, 1e-12);
 }
 
-// With rolling resistance the sphere comes to rest on the belt, which carries it.
+// With rolling resistance, the sphere stops rolling, and the belt carries it.
 TEST(ABelt, CarriesASphereThatRollingFrictionStops) {
     ContactScene scene = belt({1, 0, 0}, 0.0, 0.5, 0.1);
     scene.particle = particle_of({0, 0, 0.1}, {}, 0.1);
@@ -103,7 +104,8 @@ TEST(ABelt, CarriesASphereThatRollingFrictionStops) {
     EXPECT_EQ(end.spin, Vec3{});
 }
 
-// On a slope of 20 degrees a belt that moves uphill carries a point if mu > tan 20. Otherwise it slips under the point.
+// On a slope of 20 degrees, a belt that moves uphill carries a point if mu > tan 20. Otherwise the belt slips under the
+// point.
 TEST(ABelt, CarriesAPointUphillIfFrictionSuffices) {
     const double slope = radians(20.0);
     const Vec3 uphill{std::cos(slope), 0, std::sin(slope)};
@@ -118,7 +120,8 @@ TEST(ABelt, CarriesAPointUphillIfFrictionSuffices) {
     }
 }
 
-// A belt slips under a point at a wall. The point stays, and the belt's friction loads the wall.
+// A belt slips under a point that a wall stops. The point stays at rest, and the belt's friction presses it against the
+// wall.
 TEST(ABelt, SlipsUnderAPointThatAWallStops) {
     ContactScene scene = belt({1, 0, 0}, 0.0, 0.3);
     scene.colliders.push_back(plane_collider({1, 0, 0}, {-1, 0, 0}));
@@ -130,7 +133,7 @@ TEST(ABelt, SlipsUnderAPointThatAWallStops) {
     EXPECT_NEAR(end.position.x, 1.0, 1e-12);
 }
 
-// A point and a sphere fall onto a belt. In the end the belt carries the point, and the sphere rolls.
+// A point and a sphere fall onto a belt. At the end the belt carries the point, and the sphere rolls.
 TEST(ABelt, CarriesInAllFourResponses) {
     using enum ResponseKind;
     for (const ResponseKind response : {exact, rollback, project, penalty}) {
@@ -152,12 +155,12 @@ TEST(ABelt, CarriesInAllFourResponses) {
         EXPECT_LT(length(point.velocity - Vec3{2, 1, 0}), 1e-12);
         EXPECT_LT(length(sphere.velocity - 2.0 / 7.0 * Vec3{2, 1, 0}), 1e-12);
         EXPECT_LT(length(sphere.velocity - cross(sphere.spin, Vec3{0, 0, 0.1}) - Vec3{2, 1, 0}), 1e-12);
-        // From the impact at 0.2 s, friction has an impulse of mu (1 + e) m v, and then a force of mu m g.
+        // The impact at 0.2 s has a friction impulse of mu (1 + e) m v. Afterwards the friction force is mu m g.
         EXPECT_NEAR(point.position.x, 3.3586, 2e-3);
     }
 }
 
-/// Returns the plane z = 0 turning about z.
+/// Returns the plane z = 0 whose material turns about z.
 ContactScene turntable(double rate, double friction) {
     ContactScene scene = belt({}, 0.0, friction);
     scene.materials[0].motion.angular_velocity = {0, 0, rate};
@@ -171,7 +174,8 @@ double error_of_orbit(double time_step) {
     const double rate = 2.0;
     const double radius = 0.05;
     ContactScene scene = turntable(rate, 1.0);
-    // Rolling: v = (2/7) rate z x (p - c) about a center c, with the spin required by v - w x r n = rate z x p.
+    // A rolling sphere at p moves about a centre c with v = (2/7) rate z x (p - c). Its spin w follows from the
+    // condition v - w x r n = rate z x p.
     const Vec3 center{0.3, -0.2, 0};
     const Vec3 from{1, 0, radius};
     const double turn = 2.0 / 7.0 * rate;
@@ -194,7 +198,7 @@ double error_of_orbit(double time_step) {
 
 TEST(ATurntable, MovesARollingSphereInACircleAtTwoSeventhsOfItsRate) {
     EXPECT_LT(error_of_orbit(1e-3), 1e-6);
-    // Longer steps are split if the table turns by more than the largest angle of an arc.
+    // A longer step is split if the table turns by more than the largest angle of a contact interval.
     const double coarse = error_of_orbit(0.05);
     const double fine = error_of_orbit(0.0125);
     EXPECT_LT(fine, coarse / 14.0) << "of second order at least";
@@ -225,7 +229,7 @@ TEST(ATurntable, SpinsUpASphereOnItsAxisByItsResistanceToSpinning) {
     scene.materials[0].spinning_friction = 0.01;
     scene.particle = particle_of({0, 0, 0.1}, {}, 0.1);
     scene.duration = 1.0;
-    // The moment 0.01 m g over 0.4 m r^2.
+    // The rate of the spin is the moment 0.01 m g divided by the inertia 0.4 m r^2.
     const double rate = 0.01 * kG / (0.4 * 0.01);
     double error = 0.0;
     watch(scene, [&](double time, const Particle& p) {
@@ -248,7 +252,8 @@ ContactScene drum(double rate, double friction, double angle) {
     return scene;
 }
 
-// In a slowly turning drum a point ends at the slope given by the friction. It is at rest there and slips.
+// In a slowly turning drum, a point ends at the slope whose tangent is the friction coefficient. The point is at rest
+// there, and the wall slips under it.
 TEST(ADrum, KeepsAPointAtTheSlopeOfFriction) {
     for (const double friction : {0.1, 0.3, 0.8}) {
         // For rotation about +y, the lowest part of the wall moves towards -x.
@@ -261,7 +266,7 @@ TEST(ADrum, KeepsAPointAtTheSlopeOfFriction) {
     }
 }
 
-// The drum carries the point up from the bottom to that slope, at which it starts to slip.
+// The drum carries the point from the bottom up to this slope, at which the point starts to slip.
 TEST(ADrum, CarriesAPointUpToTheSlopeOfFriction) {
     const double rate = 0.2;
     const double friction = 0.4;
@@ -327,8 +332,8 @@ SimulationSetup random_scene(std::uint64_t seed) {
     return setup;
 }
 
-// Friction is below 1. If moving walls with higher friction draw a particle into a corner, rigid bodies have no
-// solution.
+// Friction is below 1. With higher friction, moving walls can draw a particle into a corner, and rigid contact has no
+// solution there.
 TEST(SurfacesThatMove, HaveNoLeaksAndLoseNoTimeInRandomScenes) {
     const int scenes = test::scaled(60) * test::case_factor(20);
     for (int seed = 0; seed < scenes; ++seed) {
@@ -346,8 +351,8 @@ TEST(SurfacesThatMove, HaveNoLeaksAndLoseNoTimeInRandomScenes) {
     }
 }
 
-// Maxwell's diffuse walls: molecules fly between two plates, one of which moves. They have half of its velocity on
-// average if both plates emit equally (free molecular Couette flow).
+// Molecules fly between two plates with Maxwell's diffuse reflection, one of which moves (free molecular Couette flow).
+// If both plates emit equally, the mean velocity of the molecules is half the velocity of the moving plate.
 TEST(ADiffuseWall, GivesReflectedMoleculesItsOwnVelocity) {
     SimulationSetup setup;
     setup.options.time_step = 1.0;
@@ -376,7 +381,8 @@ TEST(ADiffuseWall, GivesReflectedMoleculesItsOwnVelocity) {
         ++steps;
         for (const Vec3& v : simulation.particles().velocity) sum += v.x;
     }
-    // The mean over 40 s covers about 40 crossings per particle, or 1e5 independent ones with a spread of 1.1 m/s.
+    // The mean over 40 s covers about 40 crossings of the gap per particle. These are about 1e5 independent velocities
+    // with a standard deviation of 1.1 m/s.
     EXPECT_NEAR(sum / kCount / steps, 0.5, 5.0 * 1.1 / std::sqrt(1e5));
 }
 

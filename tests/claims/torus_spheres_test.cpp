@@ -1,7 +1,7 @@
-// Spheres that tumble in a torus of triangles lose no simulated time, for any friction, restitution and size. Their
-// cost, measured by the number of impacts, is close to that of points.
+// Spheres that tumble in a torus of triangles lose no simulated time, for any friction, restitution and size. They have
+// nearly as few impacts as points, so their cost is similar.
 //
-// A long run has three thousand of them for three seconds.
+// A long run has three thousand spheres for three seconds.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -89,7 +89,7 @@ TEST(SpheresInATorus, LoseNoTimeAndCostAtMostThreeTimesAsMuchAsPoints) {
                 const SimulationStatistics spheres = run(filling_of(friction, restitution, largest));
                 EXPECT_EQ(spheres.unsimulated_time, 0.0);
                 EXPECT_EQ(spheres.budget_exhausted, 0U);
-                // Required bound.
+                // The factor 3 is a required bound.
                 EXPECT_LE(spheres.contacts, 3 * points.contacts) << "of points";
                 RecordProperty("contacts", std::to_string(spheres.contacts));
             }

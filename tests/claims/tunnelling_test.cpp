@@ -16,7 +16,7 @@ namespace RICOCHET_FILE {
 struct Shot {
     IntegratorKind integrator;
     double time_step;
-    bool is_sheet;  ///< a single layer of triangles, otherwise a plate of a tenth of a millimetre
+    bool is_sheet;  ///< true: a single layer of triangles; false: a plate 0.1 mm thick
 };
 
 class Tunnelling : public ::testing::TestWithParam<Shot> {};
@@ -48,7 +48,8 @@ TEST_P(Tunnelling, ABulletStaysOnItsSideOfAThinPlate) {
     setup.options.time_step = GetParam().time_step;
     setup.options.duration = std::min(2.0, 200.0 * GetParam().time_step);
     setup.options.integrator = GetParam().integrator;
-    setup.forces.push_back(make_gravity({1000.0, 0, -9.81}));  // blown back towards the plate
+    setup.forces.push_back(make_gravity({1000.0, 0, -9.81}));  // a force along x blows the bullet back towards the
+                                                               // plate
     setup.materials = {{"steel", 0.9, 0.1}};
     setup.colliders.push_back(
         {"target", MeshShape{std::make_shared<const TriangleMesh>(target(GetParam().is_sheet)), {}, ""}, 0});

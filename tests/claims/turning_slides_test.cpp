@@ -1,5 +1,5 @@
-// Slides whose friction turns, on flat surfaces: closed forms of points and spheres on a slope, over seams and for any
-// time step. A slope is a level floor under a tilted force.
+// Slides on flat surfaces with friction that changes its direction. Closed forms describe points and spheres on a
+// slope, over seams and for any time step. The slope is modelled as a level floor under a tilted force.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ MovingParticle kicked_sideways(double speed, double radius = 0.0) {
     return {{{0.0, 0.1, radius + 1e-14}, {0.0, speed, 0.0}, 1.0, radius, 0.0}, {}, 0, 0};
 }
 
-// At the angle of friction, speed plus downhill velocity are constant.
+// If the slope has the angle of friction, the sum of the speed and the downhill velocity is constant.
 TEST(APointKickedAcrossASlope, KeepsSpeedPlusDownhillVelocityAtTheAngleOfFriction) {
     for (const double step : {0.2, 0.05, 0.01}) {
         Course course = slope_of(mesh_collider(floor_mesh(50.0, 97)), std::tan(kAngle));
@@ -47,7 +47,7 @@ TEST(APointKickedAcrossASlope, KeepsSpeedPlusDownhillVelocityAtTheAngleOfFrictio
     }
 }
 
-// The slip of a sphere obeys the equation of a point with friction 7/2 times as large, until the sphere rolls.
+// Until the sphere rolls, its slip obeys the equation of a point whose friction coefficient is 7/2 times as large.
 TEST(ASphereKickedAcrossASlope, KeepsSlipPlusDownhillSlip) {
     const double radius = 0.1;
     const double friction = std::tan(kAngle) / 3.5;

@@ -1,5 +1,5 @@
-// Persistent contact follows varying forces (drag, springs, central attraction) to the order of the integrator. It
-// conserves the energy of forces with a potential.
+// Persistent contact under varying forces: drag, springs and central attraction. The motion has the order of the
+// integrator. Energy is conserved if the forces have a potential.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ Particle end_with(const ContactScene& scene, std::vector<std::unique_ptr<Force>>
     return simulation.particles().at(0);
 }
 
-/// Returns a point or a sphere on the plane z = 0. With friction it rolls.
+/// Returns a point or a sphere on the plane z = 0. With friction, the sphere rolls.
 ContactScene on_a_plane(double radius, double friction, const Vec3& place, const Vec3& velocity) {
     ContactScene scene;
     scene.colliders = {{"floor", PlaneShape{{}, {0, 0, 1}}, 0}};
@@ -62,7 +62,8 @@ std::vector<IntegratorKind> methods_of_second_order() {
     return {IntegratorKind::midpoint, IntegratorKind::velocity_verlet, IntegratorKind::rk4};
 }
 
-/// Expects an error in x like that of the midpoint rule, which falls by at least 3.8 at half the step.
+/// Expects an error in x as small as that of the midpoint rule. At half the step, the error must fall by at least the
+/// factor 3.8.
 void expect_second_order(ContactScene scene, const MakeForces& forces, double expected) {
     for (const IntegratorKind kind : methods_of_second_order()) {
         scene.integrator = kind;
@@ -72,14 +73,14 @@ void expect_second_order(ContactScene scene, const MakeForces& forces, double ex
         };
         const double coarse = error(0.1);
         const double fine = error(0.05);
-        EXPECT_LT(coarse, 4e-3) << name_of(kind);  // (c dt)^2 / 6 of the path
+        EXPECT_LT(coarse, 4e-3) << name_of(kind);  // relative error (c dt)^2 / 6 of the path
         EXPECT_LT(fine, coarse / 3.8 + 1e-12) << name_of(kind);
     }
 }
 
 TEST(LinearDrag, BrakesSlidingAndRollingParticlesToSecondOrder) {
     const MakeForces forces = [] { return list_of(make_gravity({0, 0, -kStandardGravity}), make_linear_drag(1.0)); };
-    // m v' = -c v; a rolling particle has an inertia of 7/5 of its mass.
+    // The equation of motion is m v' = -c v. For a rolling sphere, the effective mass is 7/5 m.
     expect_second_order(on_a_plane(0.0, 0.0, {}, {3, 0, 0}), forces, 3.0 * (1.0 - std::exp(-1.0)));
     expect_second_order(on_a_plane(0.1, 100.0, {}, {3, 0, 0}), forces, 4.2 * (1.0 - std::exp(-1.0 / 1.4)));
 }
@@ -105,9 +106,10 @@ TEST(LinearDrag, BrakesSlidingParticlesWithinTheToleranceOfDormandPrince) {
     EXPECT_NEAR(end.position.x, 3.0 / 20.0 * (1.0 - std::exp(-20.0)), 1e-7);
 }
 
-// v = v0 + b t - s t^2 / 2 with b = 4 m/s^2 minus friction. At the start the force exceeds friction, and in the middle
-// of the step it has reversed. The point stops in between and sticks. Intervals end within a quarter of their planned
-// time. The force error there is at most an eighth of its change, which is a tenth of the path.
+// The velocity is v = v0 + b t - s t^2 / 2, where b is 4 m/s^2 minus the deceleration by friction. At the start the
+// force exceeds friction, and in the middle of the step the force has reversed. The point stops in between and sticks.
+// Contact intervals end within a quarter of their planned time. The error of the force there is at most an eighth of
+// its change. This error changes the path by at most a tenth.
 TEST(AForceThatTurnsWithinAStep, StopsAPointAtTheTimeOfItsIntegral) {
     constexpr double kForce = 4.0;    // in m/s^2
     constexpr double kSlope = 100.0;  // in m/s^3
@@ -160,9 +162,9 @@ Simulation rope_over_a_box(const RopeCase& c) {
     return Simulation(std::move(setup));
 }
 
-// The rope oscillates more than once per step, and its nodes slip, roll and stick in turn. Forces at both ends of a
-// contact interval do not determine the forces in between. An interval planned with forces of a midpoint that it does
-// not reach could gain energy.
+// The rope oscillates more than once per step, and its nodes slip, roll and stick in turn. The forces at both ends of a
+// contact interval do not determine the forces in between. An interval that is planned with the forces at its midpoint,
+// but ends before it, could gain energy.
 TEST(ARopeOverABox, GainsNoEnergyFromIt) {
     for (const RopeCase& c :
          {RopeCase{IntegratorKind::rk4, 12, 500.0, 0.5, 0.01}, RopeCase{IntegratorKind::rk4, 5, 2000.0, 0.3, 0.005},
@@ -194,7 +196,7 @@ double worst_change(const ContactScene& scene, std::vector<std::unique_ptr<Force
     return worst / moving;
 }
 
-// A hundred swings, with a rounding error of the potential of about 1e-16 in each of 30 000 arcs.
+// The run has a hundred swings. The potential has a rounding error of about 1e-16 in each of 30 000 contact intervals.
 TEST(ForcesWithAPotential, ConserveTheEnergyOfSlidingAndRollingParticles) {
     for (const auto& [radius, friction] : {std::pair{0.0, 0.0}, std::pair{0.1, 0.0}, std::pair{0.1, 100.0}}) {
         ContactScene scene = on_a_plane(radius, friction, {1, 0, 0}, {0, 0.5, 0});
@@ -217,7 +219,8 @@ TEST(ForcesWithAPotential, ConserveTheEnergyOfAMarbleAttractedToABall) {
     scene.integrator = IntegratorKind::rk4;
     scene.time_step = 0.02;
     scene.duration = 100.0;
-    // The attraction is off the centre, so that it pulls the marble along its path.
+    // The centre of attraction is not the centre of the bowl, so that the force has a component along the marble's
+    // path.
     EXPECT_LT(worst_change(scene, list_of(make_point_gravity({{{0.2, 0, 0.1}, 9.81, 0.0}}), make_gravity({}))), 1e-11);
 }
 

@@ -1,4 +1,4 @@
-// A sphere rolls on a floor along a wall. A wall without friction has no effect. A wall with friction acts as in an
+// A sphere rolls on a floor along a wall. A frictionless wall has no effect. With a rough wall, the motion matches an
 // integration of the equations of motion.
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ namespace RICOCHET_FILE {
 constexpr double kG = kStandardGravity;
 constexpr double kSphereRadius = 0.1;
 
-/// Returns a sphere on the floor z = 0 that touches the wall y = 0. Gravity presses it onto the wall with `press`
-/// m/s^2.
+/// Returns a sphere on the floor z = 0 that touches the wall y = 0. A component of gravity of `press` m/s^2 presses the
+/// sphere onto the wall.
 ContactScene along_the_wall(double floor_friction, double wall_friction, double press, double time_step) {
     ContactScene scene;
     scene.colliders = {plane_collider({}, {0, 0, 1}), plane_collider({}, {0, 1, 0})};
@@ -35,7 +35,7 @@ TEST(AWallWithoutFriction, DoesNotBrakeASphereThatRollsAlongIt) {
         for (const double friction : {0.0, 0.3, 2.0}) {
             for (const double step : {0.001, 0.02, 0.1}) {
                 const Particle end = end_of(along_the_wall(friction, 0.0, press, step));
-                // Required bound. No force acts along the wall, so the error is rounding.
+                // The bounds are required. No force acts along the wall, so the errors are rounding errors.
                 EXPECT_NEAR(end.position.x, 2.0, 2e-9) << press << ", " << friction << ", " << step;
                 EXPECT_NEAR(end.velocity.x, 1.0, 1e-9) << press << ", " << friction << ", " << step;
             }
@@ -43,8 +43,8 @@ TEST(AWallWithoutFriction, DoesNotBrakeASphereThatRollsAlongIt) {
     }
 }
 
-/// State of the sphere between both surfaces: its path length, its speed, and its spin times the radius.
-/// The slips along (x, y) and (x, z) are (v - w_y, w_x) on the floor and (v + w_z, -w_x) on the wall.
+/// State of the sphere: path length, speed v, and the three components of w, the spin times the radius.
+/// The slip on the floor is (v - w_y, w_x) along (x, y). The slip on the wall is (v + w_z, -w_x) along (x, z).
 using State = std::array<double, 5>;
 using Slip = std::array<double, 2>;
 
@@ -52,11 +52,12 @@ Slip floor_slip(const State& y) { return {y[1] - y[3], y[2]}; }
 Slip wall_slip(const State& y) { return {y[1] + y[4], -y[2]}; }
 double size(const Slip& slip) { return std::hypot(slip[0], slip[1]); }
 
-/// Speed in m/s below which a slip has ended. The friction of the remaining slip moves the sphere by less than 1e-10 m.
+/// Slip speed, in m/s, below which a slip counts as ended. The friction of the ignored slip would move the sphere by
+/// less than 1e-10 m.
 constexpr double kEnded = 1e-11;
 
-/// Equations of motion, with forces per mass. A surface sticks once its slip has ended. In the cases here, the friction
-/// of the other surface, divided by 3.5, is below the friction limit.
+/// Equations of motion, with forces per mass. After its slip has ended, a surface sticks. This is valid in the cases
+/// here, because the required friction is 1/3.5 of the other surface's friction and below the limit.
 class Walls {
 public:
     Walls(double floor_friction, double wall_friction, double press)
@@ -70,7 +71,7 @@ public:
             const State rate = rates(y);
             for (const auto& slip : {floor_slip, wall_slip}) {
                 const double change = std::hypot(slip(rate)[0], slip(rate)[1]);
-                // Slips end at a finite rate, so the steps shrink with them.
+                // A slip reaches zero at a finite rate, so the step is limited in proportion to the slip.
                 if (size(slip(y)) > kEnded && change > 0.0) h = std::min(h, 0.05 * size(slip(y)) / change);
             }
             y = runge_kutta_step(y, h, [&](const State& z) { return rates(z); });
@@ -87,7 +88,8 @@ private:
         if (!floor_slips_) y[3] = y[1];
         if (!wall_slips_) y[4] = -y[1];
     }
-    /// N_floor = g - W_z and N_wall = press - F_y. F and W are the frictions, each along its slip.
+    /// Returns the time derivatives. The normal forces are N_floor = g - W_z and N_wall = press - F_y. F and W are the
+    /// friction forces of the floor and the wall, each opposite to its slip.
     [[nodiscard]] State rates(const State& y) const {
         const Slip f = floor_slips_ ? along(floor_slip(y), floor_) : Slip{};
         const Slip w = wall_slips_ ? along(wall_slip(y), wall_) : Slip{};
@@ -96,7 +98,7 @@ private:
         const double n_w = (press_ - kG * f[1]) / determinant;
         Slip force_f{n_f * f[0], n_f * f[1]};
         Slip force_w{n_w * w[0], n_w * w[1]};
-        // The friction of a sticking surface follows the other friction.
+        // The friction of a sticking surface follows from the friction of the other surface.
         if (!floor_slips_) force_f = {-force_w[0] / 3.5, force_w[1]};
         if (!wall_slips_) force_w = {-force_f[0] / 3.5, force_f[1]};
         return {y[1], force_f[0] + force_w[0], 2.5 * (force_f[1] - force_w[1]), -2.5 * force_f[0], 2.5 * force_w[0]};
@@ -113,7 +115,7 @@ private:
 
 struct Case {
     double floor_friction, wall_friction, press;
-    Vec3 spin;  ///< times the radius
+    Vec3 spin;  ///< initial spin times the radius
 };
 
 TEST(AWallWithFriction, BrakesARollingSphereAsTheEquationsPredict) {
@@ -130,7 +132,7 @@ TEST(AWallWithFriction, BrakesARollingSphereAsTheEquationsPredict) {
                 scene.time_step = step;
                 scene.duration = time;
                 const Particle end = end_of(scene);
-                // Required bound.
+                // The bounds are required.
                 EXPECT_NEAR(end.position.x, expected[0], 1e-6) << c.press << ", " << time << ", " << step;
                 EXPECT_NEAR(end.velocity.x, expected[1], 1e-6) << c.press << ", " << time << ", " << step;
             }

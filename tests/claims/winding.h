@@ -1,4 +1,5 @@
-/// \file Side of a closed mesh on which a point lies, by the solid angles of the triangles. Independent of the library.
+/// \file Winding number of a closed mesh about a point, from the solid angles of the triangles. This computation is
+/// independent of the library.
 #pragma once
 
 #include <cmath>
@@ -8,7 +9,7 @@
 
 namespace ricochet::testing {
 
-/// Returns the solid angle of a triangle over 2 pi.
+/// Returns the solid angle of a triangle, divided by 2 pi.
 /// Source: A. van Oosterom, J. Strackee, "The Solid Angle of a Plane Triangle", IEEE Transactions on Biomedical
 /// Engineering 30, 1983.
 [[nodiscard]] inline long double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {

@@ -260,7 +260,7 @@ private:
     ValueRange range_;
     Camera camera_;
     std::vector<PreviewMesh> meshes_;
-    std::vector<std::filesystem::path> mesh_files_;  // one per mesh
+    std::vector<std::filesystem::path> mesh_files_;  // files of meshes_, in the same order
     ValueRange collider_range_;
     ImpulseSizes impulse_sizes_;                   // impulses on the colliders that a quantity colours
     std::optional<double> totals_end_;             // in s

@@ -1,5 +1,5 @@
 /// \file
-/// Scenes written by `ricochet new`: fitted to a mesh, with comments.
+/// Texts of the scenes that `ricochet new` writes. The scenes are fitted to a mesh and have comments.
 #pragma once
 
 #include <optional>

@@ -55,7 +55,7 @@ RunResources RunResources::of_this_process() {
 
 SharedRun::SharedRun(With with) {
     if (with == With::nobody) return;
-    // Other ranks than the first are silent until the ranks have joined, because an earlier failure occurs on every
+    // All ranks except the first print nothing until the ranks have joined, because an earlier failure occurs on every
     // rank.
     be_silent(mpi::launch_rank() > 0);
     ranks_ = mpi::join();

@@ -28,7 +28,7 @@ struct MeshReport {
     bool wound_inward = false;             ///< true if the mesh is closed and its normals point inward
     TopologyReport topology;               ///< topology of the collision mesh; vertices at equal positions are joined
     std::size_t joined_vertices = 0;       ///< number of used vertices that were joined with an earlier one
-    std::size_t shells_nested_alike = 0;   ///< shells within others of the same winding; 0 if the winding is
+    std::size_t shells_nested_alike = 0;   ///< number of shells inside shells of the same winding; 0 if the winding is
                                            ///< inconsistent
     std::size_t duplicate_faces = 0;       ///< number of faces with the same vertices as an earlier face
     std::size_t degenerate_triangles = 0;  ///< number of triangles whose area is exactly zero

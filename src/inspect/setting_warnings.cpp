@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace {
 
-/// Spheres with at least this restitution are assumed to be meant to keep their energy. Local, because it decides only
+/// Smallest restitution at which the user probably expects spheres to keep their energy. Local, because it decides only
 /// about a warning.
 constexpr double kNearlyElastic = 0.9;
 

@@ -111,7 +111,7 @@ bool leads_into(const MeshInterior& shell, const TriangleMesh& mesh, std::uint32
     return false;
 }
 
-/// The interiors of the shells of a mesh, made on demand.
+/// Interiors of the shells of a mesh, created on demand.
 class Interiors {
 public:
     Interiors(const TriangleMesh& joined, const std::vector<std::uint32_t>& shell_of)

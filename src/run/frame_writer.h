@@ -71,8 +71,8 @@ public:
                          std::vector<PvdEntry> earlier = {}, std::shared_ptr<WriterThread> thread = nullptr);
 
     /// Returns a frame to be filled, as soon as the queue has space for it. The frame may reuse the memory of a written
-    /// frame and still contain its data. Otherwise it is empty. The wait comes before the frame is filled, so that at
-    /// most two frames are in memory. Throws like submit().
+    /// frame and still contain its data. Otherwise it is empty. The function waits before the frame is filled, so that
+    /// at most two frames are in memory. Throws like submit().
     [[nodiscard]] VtkPolyData blank_frame();
     /// Submits a frame. Rethrows the exception of an earlier write.
     void submit(std::uint64_t step, VtkPolyData frame);

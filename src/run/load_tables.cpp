@@ -31,7 +31,7 @@ std::array<double, 4> quaternion_of(const AffineMap& map) {
     const std::array<double, 4> squares{1.0 + xx + yy + zz, 1.0 + xx - yy - zz, 1.0 - xx + yy - zz, 1.0 - xx - yy + zz};
     const Vec3 turn{map.row_z.y - map.row_y.z, map.row_x.z - map.row_z.x, map.row_y.x - map.row_x.y};
     const Vec3 mixed{map.row_z.y + map.row_y.z, map.row_x.z + map.row_z.x, map.row_y.x + map.row_x.y};
-    // Rows of 4 q q^T.
+    // Rows of the matrix 4 q q^T.
     const std::array<std::array<double, 4>, 4> rows{{{squares[0], turn.x, turn.y, turn.z},
                                                      {turn.x, squares[1], mixed.z, mixed.y},
                                                      {turn.y, mixed.z, squares[2], mixed.x},

@@ -53,7 +53,7 @@ struct ImpulseSizes {
     void add(const ImpulseSizes& other) { of_impacts += other.of_impacts, lasting += other.lasting; }
     /// Returns true if surfaces received any impulse.
     [[nodiscard]] bool any() const { return of_impacts + lasting > 0.0; }
-    /// Returns the share of impacts in both sums, from 0 to 1. Requires any().
+    /// Returns the impulses of impacts divided by all impulses, from 0 to 1. Requires any().
     [[nodiscard]] double share_of_impacts() const { return of_impacts / (of_impacts + lasting); }
 };
 

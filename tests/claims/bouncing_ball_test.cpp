@@ -1,5 +1,5 @@
-// A ball dropped on a floor matches the closed form: at every impact and every apex, in the time to rest, and in the
-// path length. The result must not depend on the time step and the triangulation of the floor.
+// A ball is dropped on a floor. Its impacts, its apexes, the time to rest and the path length match the closed form.
+// The result must not depend on the time step and the triangulation of the floor.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

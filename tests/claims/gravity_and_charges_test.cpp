@@ -163,7 +163,8 @@ TEST(CoulombForce, KeepsOrderTwoWithBouncesAndThreeWithRk4) {
 TEST(CoulombForce, ReturnsAChargeFromAWallAtTheTimeOfTheClosedForm) {
     constexpr double kStart = 1.0;
     constexpr double kWall = 0.3;
-    // t = sqrt(r0^3 / 2) (sqrt(q (1 - q)) + acos(sqrt(q))), q = r / r0, for the attraction 1 / r^2.
+    // With the attraction 1 / r^2, the fall from r0 to r = q r0 takes t = sqrt(r0^3 / 2) (sqrt(q (1 - q)) +
+    // acos(sqrt(q))).
     const double q = kWall / kStart;
     const double fall = std::sqrt(0.5) * (std::sqrt(q * (1.0 - q)) + std::acos(std::sqrt(q)));
     const auto error_of = [&](IntegratorKind kind, double steps) {

@@ -81,7 +81,7 @@ Particle first_in_flight(const ContactScene& scene, const Vec3& center, double r
 
 struct Off {
     const char* name;
-    double radius, friction, angle;  ///< radius and friction of the particle, and its start angle
+    double radius, friction, angle;  ///< radius of the particle, friction coefficient, and start angle
 };
 
 ContactScene off_a_ball(const Off& off, double time_step) {

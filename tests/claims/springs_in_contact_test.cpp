@@ -1,5 +1,5 @@
 // Springs between particles that slide, rest and roll. In every step, one end of a spring gains the momentum that the
-// other end loses, in flight and in contact. Other tests compare with closed forms.
+// other end loses, in flight and in contact. Other tests compare results with closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -14,8 +14,8 @@
 namespace ricochet {
 namespace {
 
-/// Largest number of halvings of a path that dips into a surface that the flow leaves. Local: a limit of this search,
-/// whose result is checked.
+/// Largest number of times that a path is halved because it enters a surface from which the flow leads away. Local,
+/// because the result of this search is checked.
 constexpr int kMostHalvings = 40;
 
 /// One particle that a flow carries through one step.
@@ -54,15 +54,15 @@ private:
     ParticleStep step_;
     ContactManifold manifold_;
     ConstrainedFlow flow_;
-    std::uint32_t surface_segments_ = 0;  // paths along surfaces; they share the budget with the impacts
-    std::uint32_t quick_contacts_ = 0;    // consecutive impacts with almost no time between them
-    double remaining_at_contact_ = 0.0;   // s, at the last impact
-    double widening_ = 1.0;               // of reach()
-    std::uint32_t contacts_here_ = 0;     // consecutive impacts without progress, near `here_`
+    std::uint32_t surface_segments_ = 0;  // number of paths along surfaces, which count against the bounce budget
+    std::uint32_t quick_contacts_ = 0;    // number of consecutive impacts with almost no time between them
+    double remaining_at_contact_ = 0.0;   // s, value of step_.remaining() at the last impact
+    double widening_ = 1.0;               // factor of reach()
+    std::uint32_t contacts_here_ = 0;     // number of consecutive impacts without progress, near `here_`
     Vec3 here_;
     double remaining_here_ = 0.0;
-    bool is_stuck_ = false;                                     // in a pit, until the end of the step
-    double longest_ = std::numeric_limits<double>::infinity();  // s, limit of the next path
+    bool is_stuck_ = false;                                     // true: in a pit until the end of the step
+    double longest_ = std::numeric_limits<double>::infinity();  // s, limit of the next path's duration
 };
 
 MoveOutcome Advector::run() {
@@ -88,7 +88,7 @@ MoveOutcome Advector::run() {
     return outcome;
 }
 
-/// Follows one path: to the end of the step, to the end of the surfaces that hold the particle, or to the next contact.
+/// Follows one path until the step ends, the particle leaves its supporting surfaces, or it touches another surface.
 void Advector::advance() {
     const Path path = flow_.next_path(std::min(step_.remaining(), longest_), reach());
     surface_segments_ += flow_.is_held() ? 1 : 0;
@@ -108,7 +108,7 @@ void Advector::advance() {
     if (contact) resolve(*contact);
 }
 
-/// Counts an impact. Its surfaces come first in the manifold.
+/// Counts and records an impact. Its surfaces become the first contact points of the manifold.
 void Advector::resolve(const Contact& contact) {
     ++step_.outcome().bounces;
     manifold_.remember(contact.all());
@@ -122,9 +122,10 @@ void Advector::resolve(const Contact& contact) {
     }
 }
 
-/// Widens reach(), or marks the particle as stuck, after many quick impacts. In a blunt valley a path meets the other
-/// face far beyond the rim of the first face. If a particle alternates between both, its reach grows until both hold
-/// it. If it still alternates at the largest reach, it stays in place until the end of the step.
+/// Widens reach(), or marks the particle as stuck, after many quick impacts. In a valley with a wide angle, a path that
+/// leaves one face hits the other face far beyond the rim of the first. If a particle alternates between the faces,
+/// reach() grows until the particle touches both at once. If it still alternates at the largest reach, it stays in
+/// place until the end of the step.
 void Advector::watch_progress() {
     const double elapsed = remaining_at_contact_ - step_.remaining();
     const bool is_quick = quick_contacts_ > 0 && elapsed <= kQuickContact * step_.duration();
@@ -132,7 +133,7 @@ void Advector::watch_progress() {
     remaining_at_contact_ = step_.remaining();
     if (!is_quick) widening_ = 1.0;
     if (quick_contacts_ % kContactsToWiden == 0) widening_ = std::min(2.0 * widening_, kMostWidening);
-    // Positions near the origin are rounded very finely, so the distance that the flow covers in a step counts, too.
+    // The contact offset is tiny near the origin, so the limit also includes a fraction of the flow's path in a step.
     const double next_to_nothing = std::max(kEdgeOffsets * contact_offset(state_.position),
                                             kNoProgress * step_.duration() * length(flow_.free_velocity()));
     const bool is_here = contacts_here_ > 0 && max_abs(state_.position - here_) <= next_to_nothing &&
@@ -158,8 +159,8 @@ void Advector::finish() {
     outcome.end = stays ? MoveEnd::held : MoveEnd::resting;
 }
 
-/// Returns a rule that ends a surface at half of reach() beyond its rim. A path goes the whole reach beyond the rim, so
-/// at its end it has certainly left the surface.
+/// Returns the standard rule, except that a flat surface extends to half of reach() beyond its rim. A path that leaves
+/// a surface ends at the whole reach() beyond the rim. There it has certainly left the surface.
 TouchRule Advector::touch_rule() const {
     TouchRule rule = TouchRule::at(step_.geometry(), state_.position);
     rule.beyond_rim = 0.5 * reach();

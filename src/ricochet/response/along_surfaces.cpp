@@ -14,11 +14,11 @@ void add_multiple(MotionVector& a, double factor, const MotionVector& b) {
     for (std::size_t c = 0; c < a.size(); ++c) a[c] += factor * b[c];
 }
 
-/// Removes the components along directions from a motion, except for given remainders. Method: modified Gram-Schmidt,
-/// twice.
+/// Changes the components of a motion along given directions to given values, by default 0. Method: modified
+/// Gram-Schmidt, applied twice.
 class Remover {
 public:
-    /// left_along: product of the direction and the motion after the removal.
+    /// Adds a direction. left_along: required dot product of the direction and the motion after the removal.
     void add(MotionVector direction, double left_along = 0.0) {
         const double whole = std::sqrt(dot(direction, direction));
         for (int pass = 0; pass < 2; ++pass) {
@@ -42,10 +42,11 @@ public:
         }
     }
 
-    /// Returns true if nothing is left of three consecutive components of any motion, from `first` on.
+    /// Returns true if the removal sets three consecutive components, starting at `first`, to zero for every motion.
     [[nodiscard]] bool takes_all(std::size_t first) const {
         if (std::any_of(left_.begin(), left_.begin() + count_, [](double left) { return left != 0.0; })) return false;
-        double trace = 0.0;  // of the projector on the directions, in these components: 3 if it takes all
+        double trace = 0.0;  // trace of the projector onto the directions, over these components; 3 if all three are
+                             // removed
         for (std::size_t k = 0; k < count_; ++k) {
             for (std::size_t c = first; c < first + 3; ++c) trace += basis_[k][c] * basis_[k][c];
         }
@@ -67,7 +68,7 @@ private:
 
 bool sticks(const Stuck& stuck) { return stuck.to_slip || stuck.to_turning || stuck.to_spinning; }
 
-/// Returns the velocity of the first moving surface to which the motion sticks; else zero.
+/// Returns the velocity of the first moving surface to which the motion sticks, or zero.
 Vec3 carrying_velocity(std::span<const SupportSurface> surfaces, const StuckSurfaces& stuck) {
     for (std::size_t k = 0; k < surfaces.size(); ++k) {
         if (stuck[k].to_slip && surfaces[k].velocity != Vec3{}) return surfaces[k].velocity;
@@ -124,7 +125,7 @@ Motion along_surfaces(const Motion& motion, double radius, std::span<const Suppo
     const bool is_free = std::none_of(stuck.begin(), stuck.begin() + surfaces.size(), sticks);
     if (is_free && motion.velocity == Vec3{}) return motion;
     if (is_free && surfaces.size() == 1) return along_single_surface(motion, radius, surfaces[0].normal, braked_from);
-    // Relative to a surface that carries the particle, a motion at rest is exactly zero.
+    // The motion is taken relative to the carrying surface, so that it is exactly zero for a particle at rest on it.
     const Vec3 carried = carrying_velocity(surfaces, stuck);
     Remover remover;
     for (const SupportSurface& surface : surfaces) {
@@ -143,7 +144,7 @@ Motion along_surfaces(const Motion& motion, double radius, std::span<const Suppo
     const double before = std::max(std::sqrt(dot(all, all)), braked_from);
     remover.remove_from(all);
     if (std::sqrt(dot(all, all)) <= kStopRounding * before) return {carried, {}};
-    // The rounding of a spin must not move a centre that was at rest, nor turn the sphere about a tangent.
+    // If the centre was at rest, rounding errors of the spin must neither move it nor turn the sphere about a tangent.
     const bool stood = motion.velocity == carried && length(velocity_of(all)) <= kStopRounding * before;
     if (stood) {
         for (const Vec3& axis : {Vec3{1.0, 0.0, 0.0}, Vec3{0.0, 1.0, 0.0}, Vec3{0.0, 0.0, 1.0}}) {

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: the surfaces that hold a particle, and projections of its motion along them. Pure
+/// Private to the responses: the surfaces that support a particle, and projections of its motion along them. Pure
 /// functions.
 #pragma once
 
@@ -12,37 +12,37 @@
 
 namespace ricochet {
 
-/// Largest number of surfaces that hold a particle at one time.
+/// Largest number of surfaces that support a particle at one time.
 inline constexpr std::size_t kMostSupports = 3;
 
 struct SurfaceMotion;
 
-/// A surface that holds a particle.
+/// A surface that supports a particle.
 struct SupportSurface {
     Vec3 normal;                     ///< unit, towards the particle
     double friction = 0.0;           ///< Coulomb coefficient
     double rolling_friction = 0.0;   ///< see Material
     double spinning_friction = 0.0;  ///< m, see Material
     /// Velocity of the surface's material at the contact, along the surface, in m/s, and its angular velocity, in
-    /// rad/s. Slip is relative to the velocity; rolling and spinning are relative to the angular velocity. 0 if the
-    /// surface does not grip.
+    /// rad/s. Slip is relative to the velocity; rolling and spinning are relative to the angular velocity. Both are 0
+    /// if the surface does not grip.
     Vec3 velocity{};
     Vec3 angular_velocity{};
     const SurfaceMotion* motion = nullptr;  ///< velocity at other positions; null if it is 0 everywhere
-    /// Rates that the surface's curvature adds because the normal turns, in m/s^2: of the distance, of the slip, and of
-    /// radius times angular velocity, along the surface and about its normal. The slip's rate contains the change of
-    /// `velocity`.
+    /// Accelerations, in m/s^2, that the surface's curvature adds because the normal turns. `curvature` changes the
+    /// distance. `slip_curvature` changes the slip and contains the change of `velocity`. `turning_curvature` and
+    /// `spinning_curvature` change radius times angular velocity, along the surface and about its normal.
     double curvature = 0.0;
     Vec3 slip_curvature{};
     Vec3 turning_curvature{};
     double spinning_curvature = 0.0;
 };
 
-/// Motions that are stuck at a surface.
+/// Kinds of relative motion at a surface that friction prevents.
 struct Stuck {
     bool to_slip = false;
-    bool to_turning = false;   ///< resistance to rolling holds it
-    bool to_spinning = false;  ///< resistance to spinning about the normal holds it
+    bool to_turning = false;   ///< rolling friction prevents rolling
+    bool to_spinning = false;  ///< spinning friction prevents spinning about the normal
 };
 using StuckSurfaces = std::array<Stuck, kMostSupports>;
 
@@ -51,29 +51,29 @@ using StuckSurfaces = std::array<Stuck, kMostSupports>;
     return slip_velocity(motion, radius, surface.normal) - surface.velocity;
 }
 
-/// Returns the sum of the speeds that contribute to slip, rolling and spinning on these surfaces, in m/s. A rate that
-/// is small next to it counts as zero.
+/// Returns the sum of the speeds that contribute to slip, rolling and spinning on these surfaces, in m/s. A speed that
+/// is small compared with this sum counts as zero.
 [[nodiscard]] double speed_scale(const Motion& motion, double radius, std::span<const SupportSurface> surfaces);
 
 /// Returns the vector nearest to v that is perpendicular to all normals.
 [[nodiscard]] Vec3 along_all(const Vec3& v, std::span<const Vec3> normals);
 
-/// Returns the shortest vector d with d . n = distance for every normal and its distance. Normals that depend on
-/// earlier ones are ignored.
+/// Returns the shortest displacement, in m, that moves a point along every normal by the distance given for that
+/// normal. Normals that depend on earlier ones are ignored.
 [[nodiscard]] Vec3 shift_by(std::span<const Vec3> normals, std::span<const double> distances);
 
-/// Returns the motion along all surfaces that is nearest to the given one (in energy). It neither slips nor turns on
-/// surfaces marked in `stuck`. braked_from: an earlier speed of the motion, in m/s; a result within its rounding is
-/// zero.
+/// Returns the motion along all surfaces that differs from the given motion by the least kinetic energy. It does not
+/// slip, roll or spin on a surface where `stuck` prevents that. braked_from: an earlier speed of the motion, in m/s. A
+/// result within the rounding error of this speed is replaced by zero.
 [[nodiscard]] Motion along_surfaces(const Motion& motion, double radius, std::span<const SupportSurface> surfaces,
                                     const StuckSurfaces& stuck, double braked_from = 0.0);
 
-/// Returns twice the kinetic energy over the mass of a solid sphere, or a point (radius 0), in m^2/s^2.
+/// Returns twice the kinetic energy, divided by the mass, of a solid sphere, or a point (radius 0), in m^2/s^2.
 [[nodiscard]] double twice_kinetic(const Motion& motion, double radius);
 
-/// Slows a motion that has more than `most` of energy (twice, over the mass), because surfaces give no energy, whatever
-/// the error of a method. An excess within the rounding of positions is ignored. offset: work of the forces over a
-/// contact offset, in m^2/s^2.
+/// Slows a motion whose twice_kinetic() exceeds `most`, in m^2/s^2. Surfaces add no energy, so such an excess is an
+/// error of the method. An excess within the rounding of positions is ignored. offset: work of the forces over a
+/// contact offset, per unit mass, in m^2/s^2.
 void limit_energy(Motion& motion, double radius, double most, double offset);
 
 }  // namespace ricochet

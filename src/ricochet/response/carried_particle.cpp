@@ -23,16 +23,16 @@ Vec3 stored_position_in(const ParticleStep& step, BodyId body) {
     return bodies_of(step).local_position(body, stored_of(step).position, stored_of(step).time);
 }
 
-/// Moves the stored position along a segment, if that is free.
+/// Moves the stored position along a segment. Returns false if the segment is not free.
 bool take_segment(ParticleStep& step, const StoredPosition& next) {
     if (!is_segment_free(bodies_of(step), stored_of(step), next, radius_of(step))) return false;
     step.chain().add(next, stored_of(step).time, step.scratch());
     return true;
 }
 
-/// Carries the particle until a time, as far as segments are free. carried_position(time) is the position to which a
-/// body, or a triangle of a deforming mesh, carries it. Halves a blocked segment, up to `depth` times. Segments end at
-/// the keys of deforming meshes.
+/// Carries the particle with a collider until a given time, or as far as free segments lead. carried_position(time) is
+/// the position to which a body, or a triangle of a deforming mesh, carries the particle. Halves a blocked segment up
+/// to `depth` times. Segments end at the key times of deforming meshes.
 template <class CarriedPosition>
 bool carry_until(ParticleStep& step, const CarriedPosition& carried_position, double until, int depth) {
     const double key = bodies_of(step).deforming().next_key(stored_of(step).time);
@@ -46,7 +46,7 @@ bool carry_until(ParticleStep& step, const CarriedPosition& carried_position, do
            carry_until(step, carried_position, until, depth - 1);
 }
 
-/// Carries the particle with a body, or lets it stay in the world.
+/// Carries the particle with a body. With the world body the particle keeps its position.
 bool carry_with_body(ParticleStep& step, BodyId body, double until) {
     const Vec3 local_position = stored_position_in(step, body);
     const auto carried_position = [&](double time) {
@@ -56,8 +56,9 @@ bool carry_with_body(ParticleStep& step, BodyId body, double until) {
     return carry_until(step, carried_position, until, kCarryDepth);
 }
 
-/// Returns the position at a time of a particle that moves with the nearest point of a deforming triangle and keeps its
-/// distance. A sphere that overlaps the triangle by rounding is moved off it.
+/// Returns the position at time `until` of a particle that a deforming triangle carries. The particle moves with the
+/// nearest point of the triangle and keeps its distance from it. A sphere that overlaps the triangle by rounding is
+/// moved off it.
 Vec3 carried_by_triangle(const ParticleStep& step, SurfaceId surface, double until) {
     const Vec3& from = stored_of(step).position;
     const DeformedTriangle now = bodies_of(step).deforming().triangle_at(surface, stored_of(step).time);
@@ -72,7 +73,7 @@ Vec3 carried_by_triangle(const ParticleStep& step, SurfaceId surface, double unt
     return flush_tiny(moved + (distance - nearest.distance) * normal);
 }
 
-/// Carries the particle with each deforming triangle that it is next to, in turn.
+/// Carries the particle with each nearby deforming triangle in turn.
 void carry_with_meshes(ParticleStep& step, double until) {
     const DeformingColliders& deforming = bodies_of(step).deforming();
     const double radius = radius_of(step);
@@ -91,7 +92,7 @@ void carry_with_meshes(ParticleStep& step, double until) {
     }
 }
 
-/// Lets the particle stay, or be carried by one collider after another, as far as segments are free.
+/// Keeps the particle at its position, or carries it with one collider after another, as far as free segments lead.
 void carry_by_turns(ParticleStep& step, double until) {
     constexpr int kMostTurns = 8;
     const BodyId own = step.reference().body();
@@ -107,7 +108,7 @@ void carry_by_turns(ParticleStep& step, double until) {
     }
 }
 
-/// Bounds the rounding, in m, of stored positions in a frame until a time.
+/// Returns a bound of the rounding error, in m, of stored positions in a body's frame until a given time.
 double rounding_in(const ParticleStep& step, BodyId body, double until) {
     double rounding = ulp(max_abs(stored_of(step).position));
     if (body == kWorldBody) return rounding;
@@ -122,7 +123,7 @@ double rounding_in(const ParticleStep& step, BodyId body, double until) {
     return rounding;
 }
 
-/// Moves the particle in no time off the surfaces of a body that are nearer than the clearance, in m.
+/// Moves the particle, in zero time, away from the surfaces of a body that are nearer than the clearance, in m.
 bool step_aside(ParticleStep& step, BodyId body, double clearance) {
     const MovingColliders& bodies = bodies_of(step);
     const StoredPosition& stored = stored_of(step);
@@ -132,13 +133,13 @@ bool step_aside(ParticleStep& step, BodyId body, double clearance) {
     const Vec3 aside = local_position + *displacement;
     const Vec3 in_world = body == kWorldBody ? aside : bodies.pose(body, stored.time).point(aside);
     if (!take_segment(step, {flush_tiny(in_world), stored.time})) return false;
-    step.particle().attachment.reset();  // it has left its place of rest
+    step.particle().attachment.reset();  // the particle has left its rest position
     return true;
 }
 
-/// Moves the particle to a position with more clearance, and carries it from there. A rigid collider leaves a particle
-/// the same room at all times. But stored positions are rounded in the world, so in a narrow gap a carried position may
-/// lie behind a surface.
+/// Moves the particle to a position with more clearance, and carries it from there. The space beside a rigid collider
+/// does not change with time. But stored positions are rounded in world coordinates, so in a narrow gap a carried
+/// position may lie behind a surface.
 void carry_with_clearance(ParticleStep& step, double until) {
     for (const double roundings : kCarryingClearances) {
         const auto try_body = [&](BodyId body) {
@@ -152,8 +153,8 @@ void carry_with_clearance(ParticleStep& step, double until) {
     }
 }
 
-/// Lets the particle wait until a time, at its position or carried along. Returns false if neither is free. Its stored
-/// time then stands still.
+/// Lets the particle wait until a given time, at its position or carried by a collider. Returns false if both are
+/// blocked. Its stored time then stops before `until`.
 bool wait_until(ParticleStep& step, double until) {
     step.scratch().driven = true;
     carry_by_turns(step, until);
@@ -171,9 +172,9 @@ bool take_late_segment(ParticleStep& step, const Vec3& position) {
     return true;
 }
 
-/// Moves a particle whose stored time stands still to the present in one segment. If deforming meshes have left it no
-/// room for a time, no chain of segments leads through that time. Its new position is the present one, or where a body
-/// or a near triangle has carried it.
+/// Moves a stalled particle from its stored time to its current time in one segment. If deforming meshes left no space
+/// for it at some time between, no chain of segments leads through that time. Its new position is the stored one, or
+/// the position to which a body or a near triangle has carried it.
 bool catch_up_directly(ParticleStep& step) {
     constexpr std::size_t kMostTriangles = 8;
     const MovingColliders& bodies = bodies_of(step);

@@ -11,7 +11,8 @@
 namespace ricochet {
 namespace {
 
-/// Moves a particle off the surface that it is on, where colliders move: by a segment that is free in all frames.
+/// Moves a particle off the surface on which it lies, along a segment that is free in all frames. Used if colliders
+/// move.
 bool step_off_in_frame(ParticleStep& step, const NearSurfaces& near) {
     ForceInput& state = step.state();
     const auto position = step_off(near, state.position);
@@ -30,7 +31,7 @@ void leave_surface(ParticleStep& step, const NearSurfaces& near) {
     is_off ? step.chain().begin(step.state().position, step.scratch()) : give_up(step);
 }
 
-/// Moves to a safe position at the contact. A surface that blocks the way there becomes the contact.
+/// Moves to a safe position at the contact. If another surface blocks the path to it, that surface becomes the contact.
 void stop_at_contact(ParticleStep& step, const ContactQuery& query, ContactQueryResult& found) {
     std::optional<Contact>& contact = found.contact;
     const NearSurfaces& near = found.near;
@@ -42,9 +43,9 @@ void stop_at_contact(ParticleStep& step, const ContactQuery& query, ContactQuery
     contact = contact_with_blocker(near, query.path, {safe.reached, safe.blocker});
 }
 
-/// Puts the control polygon of a path into the chain. Returns false if the polygon is not free. A surface that bends
-/// away blocks every chord of a point's path along it, and maybe the chords of a small sphere. It leaves the polygon
-/// free.
+/// Stores the control polygon of a path in the chain. Returns false if the polygon is not free. A convex surface blocks
+/// every chord of a point's path along it, and possibly the chords of a small sphere's path. The control polygon lies
+/// outside such a surface.
 bool is_polygon_free(const ParticleStep& step, const NearSurfaces& near, const ContactQuery& query) {
     const Path& path = query.path;
     if (query.supports.empty() || path.degree != 3) return false;
@@ -56,7 +57,8 @@ bool is_polygon_free(const ParticleStep& step, const NearSurfaces& near, const C
         const double time = k < 3 ? static_cast<double>(k) / 3.0 * path.duration : path.duration;
         const PathPoint next = near.point_at(outside.point[k], time);
         if (!near.is_free(chain.back().position, next.position)) return false;
-        // In other frames the polygon does not enclose the path, and only surfaces near the path are known.
+        // In other frames the polygon does not enclose the path, and the query knows only surfaces near the path. So
+        // each segment is tested against all colliders.
         if (const SurfacesInOtherFrames* const others = near.other_frames()) {
             const SurfacesInTime& surfaces = others->surfaces();
             const StoredPosition from = surfaces.stored_position(chain.back());

@@ -9,18 +9,20 @@
 namespace ricochet {
 
 /// Moves the particle along the path of a query: to a safe position at the contact found, or to the path's end. If
-/// another surface blocks the way, that becomes the contact. Returns the time that this took, s. The particle's time
-/// passes.
+/// another surface blocks the path, that surface becomes the contact. Advances the particle's time by the elapsed time
+/// and returns it, in s.
 [[nodiscard]] double move_certified(ParticleStep& step, const ContactQuery& query, ContactQueryResult& found);
 
-/// As move_certified(), but the particle's time does not pass. clock: the path's; used only if colliders move.
+/// Does the same as move_certified(), but does not advance the particle's time. clock: clock of the path, used only if
+/// colliders move.
 [[nodiscard]] double move_certified_within(ParticleStep& step, const ContactQuery& query, ContactQueryResult& found,
                                            const PathClock& clock);
 
-/// Returns the particle along its own segments to the start of the chain. No moving collider may be near.
+/// Moves the particle back along its own segments to the start of the chain. No moving collider may be near.
 void return_to_start(ParticleStep& step);
 
-/// Puts a particle that is on or in a surface beside it. Returns false if no such position is certified.
+/// Moves a particle that lies on or in a surface to a certified position beside the surface. Returns false if there is
+/// no such position.
 [[nodiscard]] bool step_off_surface(const NearSurfaces& near, ForceInput& state, MoveScratch& scratch);
 
 }  // namespace ricochet

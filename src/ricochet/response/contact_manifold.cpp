@@ -96,7 +96,8 @@ void ContactManifold::replace(std::span<const ContactSurface> surfaces, const To
     for (const ContactSurface& surface : candidates) add(surface);
 }
 
-/// Adds the first one, two or three candidates that leave no component of a pull into any of the others.
+/// Adds the first set of candidates that leaves no component of `pull` into any candidate. The set has as few members
+/// as possible, at most three.
 void ContactManifold::add_supports(std::span<const ContactSurface> candidates, const Vec3& pull) {
     const double rounding = kProjectionRounding * length(pull);
     std::array<Vec3, kMostPoints> normals;
@@ -155,7 +156,7 @@ void ContactManifold::touch(SurfaceId surface, const TouchRule& rule) {
     if (const auto point = touched(surface, rule)) add(*point);
 }
 
-/// Returns the contact with a surface at present, if the particle touches it.
+/// Returns the present contact with a surface, or nothing if the particle does not touch it.
 std::optional<ContactSurface> ContactManifold::touched(SurfaceId surface, const TouchRule& rule) const {
     const Vec3& p = particle_.position;
     const CollisionWorld& world = geometry_.world();
@@ -166,7 +167,7 @@ std::optional<ContactSurface> ContactManifold::touched(SurfaceId surface, const 
     if (above > (is_beside_rim ? rule.beyond_rim : rule.above) || above < -rule.overlap) return std::nullopt;
     if (dot(particle_.velocity, nearest.normal) > rule.separation_speed) return std::nullopt;
     if (!is_beside_rim) return ContactSurface{surface, nearest.normal, nearest.flat};
-    // For a point next to a rim, the direction from the rim is mere rounding, so the plane's normal is used.
+    // For a point next to a rim, the direction from the rim consists of rounding errors, so the plane's normal is used.
     const double distance = geometry_.signed_distance_from(surface, p);
     if (rule.beyond_rim > rule.above && std::fabs(distance) > rule.above) return std::nullopt;
     const Vec3 normal = geometry_.unit_normal_of(surface, p);

@@ -1,6 +1,6 @@
 /// \file
-/// Private to the responses: the contact manifold, which holds the surfaces that a particle touches at one time, and
-/// their loads.
+/// Private to the responses: the contact manifold, which consists of the surfaces that a particle touches at one time,
+/// and their loads.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,7 @@ struct TouchRule {
 /// The surfaces that a particle has touched last, at most six, in the order of their slots in a ring buffer.
 class RecentSurfaces {
 public:
-    /// Replaces the oldest surface, unless the new one is known.
+    /// Adds a surface, in place of the oldest one if the list is full. Does nothing if the list contains the surface.
     void add(SurfaceId surface) {
         const std::span<const SurfaceId> known = all();
         if (std::find(known.begin(), known.end(), surface) == known.end()) surfaces_[count_++ % kMost] = surface;
@@ -45,21 +45,21 @@ private:
     static constexpr std::size_t kMost = 6;
 
     std::array<SurfaceId, kMost> surfaces_{};
-    std::size_t count_ = 0;  // ever added
+    std::size_t count_ = 0;  // number of surfaces ever added
 };
 
-/// The contact points of one particle, at most three. More would not restrict the motion of a pressed particle further.
-/// An edge within reach beside a face is that face's own seam, and no separate contact point: on a flat surface it must
-/// not be felt.
+/// The contact points of one particle, at most three. More points would not restrict the motion of a pressed particle
+/// further. An edge whose normal is close to that of a touched face counts as a seam of the face, not as a contact
+/// point. Seams inside a flat surface must have no effect.
 class ContactManifold {
 public:
-    /// Both must outlive it. It uses the present position and velocity of the particle.
+    /// Both arguments must outlive the manifold, which always uses the particle's present position and velocity.
     ContactManifold(const SurfaceGeometry& geometry, const ForceInput& particle)
         : geometry_(geometry), particle_(particle) {}
 
     [[nodiscard]] std::size_t size() const { return count_; }
     [[nodiscard]] bool empty() const { return count_ == 0; }
-    /// k < size().
+    /// Returns contact point k. Requires k < size().
     [[nodiscard]] ContactSurface operator[](std::size_t k) const { return {surfaces_[k], normals_[k], flat_[k]}; }
     [[nodiscard]] std::span<const Vec3> normals() const { return {normals_.data(), count_}; }
     /// Returns true if one of the surfaces is curved.
@@ -68,14 +68,15 @@ public:
     }
     /// Returns true if one of the surfaces moves and grips.
     [[nodiscard]] bool is_driven(const SurfaceKinematics& surfaces) const;
-    /// Returns true if one of the surfaces that grip has a velocity that depends on the position.
+    /// Returns true if one of the gripping surfaces rotates, so that its velocity depends on the position.
     [[nodiscard]] bool is_turned(const SurfaceKinematics& surfaces) const;
     /// Returns the contact state for the next step.
     [[nodiscard]] ContactState contact_state() const { return {surfaces_, static_cast<std::uint8_t>(count_), 0.0}; }
     /// Restores the surfaces of the last step, without normals: touch_again() must follow.
     void recall(const ContactState& contact_state);
 
-    /// Adds a contact point, unless the manifold has one with the same normal, or the face to which the seam belongs.
+    /// Adds a contact point, unless the manifold has one with the same normal. A seam is not added if the manifold
+    /// contains its face; a face replaces its seam.
     void add(const ContactSurface& surface);
     void clear();
     void remove(std::size_t k);
@@ -88,23 +89,23 @@ public:
 
     /// Remembers surfaces that the particle collides with. replace() tries them again.
     void remember(std::span<const ContactSurface> surfaces);
-    /// Replaces the contact points by the surfaces of an impact, and then the latest others that are still touched.
+    /// Replaces the contact points by the surfaces of an impact, followed by recent surfaces that are still touched.
     void replace(std::span<const ContactSurface> surfaces, const TouchRule& rule);
-    /// As above. If there are more than three, the first three are chosen so that they leave no component of `pull`
-    /// into any of the surfaces.
+    /// Does the same. If there are more than three surfaces, it first adds surfaces that together leave no component of
+    /// the acceleration `pull` into any surface.
     void replace(std::span<const ContactSurface> surfaces, const TouchRule& rule, const Vec3& pull);
-    /// Replaces the contact points by the given ones that are still touched, with their present normals.
+    /// Replaces the contact points by the given contacts that are still touched, with their present normals.
     void touch_again(const ContactState& contact_state, const TouchRule& rule);
     /// Updates the present contact points.
     void touch_again(const TouchRule& rule) { touch_again(contact_state(), rule); }
 
-    /// Loads the contact points with their reactions to an acceleration, in m/s^2.
+    /// Sets the loads to the reactions of the contact points to an acceleration, in m/s^2.
     void load(const Vec3& pull);
     void unload() { loads_ = {}; }
     [[nodiscard]] bool is_loaded() const {
         return std::any_of(loads_.begin(), loads_.end(), [](const Vec3& load) { return load != Vec3{}; });
     }
-    /// Loads the contact points with the reactions of an interval.
+    /// Sets the loads to the reactions of an interval.
     void load(const ContactInterval& interval);
     /// The contact points with their materials.
     struct SupportList {
@@ -138,8 +139,8 @@ private:
     RecentSurfaces recent_;
 };
 
-/// Returns the velocity turned along planes of the given normals, at the same speed. Returns std::nullopt if no
-/// component of it is along them.
+/// Returns the velocity, turned into the direction of its projection onto the planes of the given normals. The speed
+/// stays the same. Returns std::nullopt if the projection is zero.
 [[nodiscard]] std::optional<Vec3> turned_along(const Vec3& velocity, std::span<const Vec3> normals);
 
 }  // namespace ricochet

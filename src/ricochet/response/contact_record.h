@@ -10,9 +10,9 @@
 namespace ricochet {
 
 /// Effect of one surface in an impact, as in the contact log. An impact in a corner has several records of the same
-/// time and particle. Each one begins with the velocity after the one before. Contacts of the penalty response last: it
-/// records their beginnings, with the same velocity before and after. They have no impulse, except on surfaces that
-/// absorb or reflect at random.
+/// time and particle. The velocity before each record is the velocity after the previous one. Contacts of the penalty
+/// response last for a time. Their records mark the start of the contact and have no impulse: the velocities before and
+/// after are the same. Surfaces that absorb or reflect at random are exceptions.
 struct ContactRecord {
     double time = 0.0;  ///< s, simulation time
     std::uint64_t particle = 0;

@@ -23,7 +23,7 @@ bool ContactSupport::rebounds_slowly(const Contact& contact, const Motion& arriv
         const double approach = -dot(arriving.velocity, surface.normal) - kicked;
         if (surface.is_support || !(approach > 0.0)) return true;
         const double rebound = std::max(0.0, material.restitution_at(approach) * approach);
-        if (rebound >= step_.resting_speed()) return false;  // no limit of slow rebounds is higher
+        if (rebound >= step_.resting_speed()) return false;  // slow_rebound() never exceeds the resting speed
         return !(rebound >= slow_rebound(surface, forces, kick_duration > 0.0, dies_out()));
     });
 }
@@ -35,7 +35,8 @@ bool ContactSupport::has_losses(const ContactSurface& surface) const {
 
 /// Returns the speed of rebounds, in m/s, below which bounces on a surface count as contact. On a surface without
 /// losses, bounces die out only if another surface has losses (`dies_out`). Otherwise they never end, but count as
-/// contact if they rise no higher than the touching distance. kicked: bounces after a kick are kept.
+/// contact if they rise no higher than the touching distance. kicked: true if the velocity contains a kick. Bounces on
+/// a surface without losses then never count as contact.
 double ContactSupport::slow_rebound(const ContactSurface& surface, const Vec3& forces, bool kicked,
                                     bool dies_out) const {
     const double resting_speed = step_.resting_speed();
@@ -84,9 +85,9 @@ Vec3 ContactSupport::velocity_after_rebounds(const Vec3& forces) const {
     return along_all(state().velocity, std::span(normals).first(count));
 }
 
-/// Returns the accelerations, in m/s^2, that the surfaces of the manifold exert if they jointly hold the particle. The
-/// particle then moves along the surfaces that it leaves more slowly than `fastest`, in m/s. A wall may press only
-/// because another one slopes towards it.
+/// Returns the accelerations, in m/s^2, that the surfaces of the manifold exert if they jointly support the particle.
+/// Only surfaces that the particle leaves more slowly than `fastest`, in m/s, can support it. They are solved jointly,
+/// because a wall may be loaded only by another surface that slopes towards it.
 ContactSupport::PointAccelerations ContactSupport::combined_accelerations(const Vec3& forces, double fastest) const {
     bool has_lossless = false;
     for (std::size_t k = 0; k < manifold_.size(); ++k) has_lossless = has_lossless || !has_losses(manifold_[k]);
@@ -98,7 +99,7 @@ ContactSupport::PointAccelerations ContactSupport::combined_accelerations(const 
     return combined_accelerations(forces, fastest, false);
 }
 
-/// As above. die_out: bounces on surfaces without losses die out, between these and others.
+/// Does the same. die_out: true if bounces on surfaces without losses die out because another surface has losses.
 ContactSupport::PointAccelerations ContactSupport::combined_accelerations(const Vec3& forces, double fastest,
                                                                           bool die_out) const {
     const ContactManifold::SupportList supports = manifold_.supports(surfaces());
@@ -130,7 +131,7 @@ ContactSupport::PointAccelerations ContactSupport::combined_accelerations(const 
     return accelerations;
 }
 
-/// Returns the largest speed, in m/s, at which the particle may leave a surface that will hold it.
+/// Returns the largest separation speed, in m/s, at which a surface still supports the particle.
 double ContactSupport::fastest_separation(const ContactSurface& surface, const Vec3& forces, double fastest,
                                           bool die_out) const {
     if (has_losses(surface)) return fastest;
@@ -138,8 +139,8 @@ double ContactSupport::fastest_separation(const ContactSurface& surface, const V
     return slow > 0.0 ? slow : -std::numeric_limits<double>::infinity();
 }
 
-/// Returns the surfaces on which the particle does not slip. A slip caused by a slow departure from another surface
-/// does not count.
+/// Returns the surfaces on which the particle does not slip. A slip caused by slow separation from another surface does
+/// not count.
 StuckSurfaces ContactSupport::sticking(std::span<const SupportSurface> surfaces) const {
     StuckSurfaces stuck{};
     const Motion motion{state().velocity, particle().spin};

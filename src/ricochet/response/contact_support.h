@@ -1,5 +1,6 @@
 /// \file
-/// Private to the exact response: which surfaces press on a particle, and which will hold it after an impact.
+/// Private to the exact response: finds the surfaces that press on a particle, and the surfaces that support it after
+/// an impact.
 #pragma once
 
 #include <array>
@@ -14,39 +15,39 @@
 
 namespace ricochet {
 
-/// Effect of the contact manifold on the particle, in their present states. Forces are given over the mass, in m/s^2.
+/// Effect of the contact manifold on the particle, in their present states. Forces are given per unit mass, in m/s^2.
 class ContactSupport {
 public:
-    /// Both must outlive it.
+    /// Both arguments must outlive the object.
     ContactSupport(const ParticleStep& step, const ContactManifold& manifold) : step_(step), manifold_(manifold) {}
 
-    /// Returns true if all rebounds of an impact are so slow that the bounce cascade becomes contact, if something
-    /// presses the particle on. arriving: the motion before the impact; it contains a kick by the forces for a
-    /// duration, in s.
+    /// Returns true if all rebounds of an impact are so slow that the bounce cascade becomes contact. This requires
+    /// that the particle is pressed onto a surface. arriving: the motion before the impact. It contains a kick by the
+    /// forces over `kick_duration`, in s.
     [[nodiscard]] bool rebounds_slowly(const Contact& contact, const Motion& arriving, const Vec3& forces,
                                        double kick_duration) const;
-    /// Returns the surface that presses hardest on the particle after the rebounds, or std::nullopt if the particle
-    /// flies on. The particle then moves along the surfaces that it leaves more slowly than `fastest`, in m/s.
+    /// Returns the surface that presses hardest on the particle after the rebounds, or std::nullopt if no surface does.
+    /// Only surfaces that the particle leaves more slowly than `fastest`, in m/s, can support it.
     [[nodiscard]] std::optional<ContactSurface> after_rebounds(const Vec3& forces, double fastest) const;
-    /// Returns the motion after a landing on all surfaces that will hold the particle, or std::nullopt if only one
-    /// will. Call it with the motion just after the impact: without one of the rebounds the particle would slip in
-    /// another direction, and other surfaces would hold it.
+    /// Returns the motion after a landing on all supporting surfaces, or std::nullopt if there are fewer than two. The
+    /// particle's motion must be that just after the impact. If a rebound were removed first, the particle would slip
+    /// in another direction, and other surfaces would support it.
     [[nodiscard]] std::optional<Motion> landing_on_all(const Vec3& forces) const;
 
-    /// Returns the velocity, in m/s, after the slow rebounds off all surfaces that will hold the particle. An approach
-    /// to other surfaces stays.
+    /// Returns the velocity, in m/s, after the slow rebounds from all supporting surfaces have ended. An approach
+    /// velocity towards other surfaces is kept.
     [[nodiscard]] Vec3 velocity_after_rebounds(const Vec3& forces) const;
 
     /// Returns the surface onto which the particle is pressed hardest, if any.
     [[nodiscard]] std::optional<ContactSurface> hardest_pressed(const Vec3& forces) const;
-    /// Returns true if the particle is pressed onto one of the surfaces, or not pulled off.
+    /// Returns true if the particle is pressed onto one of the surfaces, or at least not accelerated away from it.
     [[nodiscard]] bool is_pressed(const Vec3& forces) const;
-    /// Returns the acceleration that presses onto a surface, in m/s^2: by forces, and on a curved surface by the motion
-    /// along it.
+    /// Returns the acceleration, in m/s^2, that presses the particle onto a surface. It results from forces and, on a
+    /// curved surface, from the motion along it.
     [[nodiscard]] double pressing_on(const ContactSurface& surface, const Vec3& forces) const;
 
 private:
-    /// Indexed by the number of the contact point.
+    /// Accelerations, in m/s^2, indexed by the number of the contact point.
     using PointAccelerations = std::array<Vec3, kMostSupports>;
 
     [[nodiscard]] bool has_losses(const ContactSurface& surface) const;

@@ -15,7 +15,7 @@ Vec3 normal_in_world(const ResponseRules& rules, const MovingParticle& particle,
     return now.nearest(surface, now.stored(particle.state.position)).normal;
 }
 
-/// A particle in a body's frame, and the forces on it there over its mass, in m/s^2.
+/// State of a particle in a body's frame, and its acceleration by forces there, in m/s^2.
 struct SeenFromBody {
     SeenFromBody(const ResponseRules& rules, const FrameRules& frame_rules, const MovingParticle& particle, BodyId body)
         : frame(rules.bodies, body), state(particle.state) {

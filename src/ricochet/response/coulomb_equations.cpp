@@ -10,11 +10,12 @@
 namespace ricochet {
 namespace {
 
-/// Most steps of Newton's method, and halvings of a step. Four or five steps suffice as a rule, and more do not help an
-/// iteration that circles. Local: a limit of this search, whose result is checked.
+/// Largest number of steps of Newton's method, and of halvings of one step. Four or five steps usually suffice. More
+/// steps do not help if the iteration cycles. Local: a limit of this search, whose result is checked.
 constexpr int kNewtonSteps = 14;
 constexpr int kHalvings = 4;
-/// Sweeps before the first comparison of changes, see kSteadyChange. Local: a search, whose result is checked.
+/// Number of sweeps before the first comparison of changes, see kSteadyChange. Local: a search, whose result is
+/// checked.
 constexpr int kFirstComparison = 32;
 
 }  // namespace
@@ -159,7 +160,7 @@ double CoulombEquations::gain_of(std::size_t contact, const Compliance& complian
     return 1.0 / (delassus_[contact][contact] + compliance.value);
 }
 
-/// Returns the force that would remove the rate. A moving resistance always acts with its bound.
+/// Returns the force that would remove the rate. A moving resistance always acts with its largest force.
 CoulombEquations::Wish CoulombEquations::wish_of(std::size_t resistance, const Compliance& compliance) const {
     const CoulombResistance& r = resistances_[resistance];
     const std::size_t i = first_[resistance];
@@ -180,7 +181,7 @@ CoulombEquations::Wish CoulombEquations::wish_of(std::size_t resistance, const C
     return wish;
 }
 
-/// The equations of Alart and Curnier: N = max(0, N - gain rate), and T is the wish, cut to its bound.
+/// Evaluates the equations of Alart and Curnier: N = max(0, N - gain rate), and T is the wish, limited to its bound.
 double CoulombEquations::find_defects(const Compliance& compliance) {
     const MotionVector all = change();
     for (std::size_t i = 0; i < unknowns_; ++i) {
@@ -201,7 +202,7 @@ double CoulombEquations::find_defects(const Compliance& compliance) {
     return largest;
 }
 
-/// Finds the derivatives of the defects by the forces.
+/// Computes the derivatives of the defects with respect to the forces.
 void CoulombEquations::find_matrix(const Compliance& compliance) {
     for (std::size_t k = 0; k < contact_count_; ++k) {
         const double gain = gain_of(k, compliance);
@@ -221,7 +222,7 @@ void CoulombEquations::find_rows_of(std::size_t resistance, const Compliance& co
     const std::array unit{cut ? wish.force[0] / wish.size : 0.0, cut ? wish.force[1] / wish.size : 0.0};
     for (std::size_t d = 0; d < r.size; ++d) {
         for (std::size_t j = 0; j < unknowns_; ++j) {
-            double of_wish = 0.0;  // derivative of the wish, cut to its bound
+            double of_wish = 0.0;  // derivative of the limited wish
             for (std::size_t e = 0; e < r.size && !r.is_moving; ++e) {
                 const double own = i + e == j ? 1.0 - wish.gain * compliance.value : 0.0;
                 const double turned = (d == e ? 1.0 : 0.0) - unit[d] * unit[e];
@@ -233,7 +234,7 @@ void CoulombEquations::find_rows_of(std::size_t resistance, const Compliance& co
     }
 }
 
-/// Gaussian elimination with partial pivoting.
+/// Solves for the Newton step by Gaussian elimination with partial pivoting. Returns false if the matrix is singular.
 bool CoulombEquations::eliminate() {
     for (std::size_t c = 0; c < unknowns_; ++c) {
         std::size_t pivot = c;

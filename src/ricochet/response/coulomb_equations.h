@@ -4,8 +4,8 @@
 ///
 /// A motion has six coordinates: the velocity v and the turning sqrt(2/5) r omega of a solid sphere, so that all have
 /// the same inertia. A contact has a force N >= 0 along one direction of that space. Its resistances (to sliding,
-/// rolling and spinning) have forces of at most `bound` N along one or two more. Forces may be accelerations, which
-/// change accelerations, or impulses, which change velocities: the equations are the same.
+/// rolling and spinning) have forces of at most `bound` times N along one or two further directions. The equations
+/// apply to forces per mass, which change accelerations, and to impulses per mass, which change velocities.
 ///
 /// Sources: D. E. Stewart, "Rigid-body dynamics with friction and impact", SIAM Review 42 (2000), for the problem;
 /// P. Alart, A. Curnier, "A mixed formulation for frictional contact problems prone to Newton like solution methods",
@@ -23,7 +23,6 @@ namespace ricochet {
 /// A direction in the space of motions: three components of the velocity and three of sqrt(2/5) r omega.
 using MotionVector = std::array<double, 6>;
 
-/// Returns the sum of the products of the coordinates.
 [[nodiscard]] inline double dot(const MotionVector& a, const MotionVector& b) {
     double sum = 0.0;
     for (std::size_t c = 0; c < a.size(); ++c) sum += a[c] * b[c];
@@ -33,22 +32,22 @@ using MotionVector = std::array<double, 6>;
 /// One contact: 0 <= N, 0 <= rate, N rate = 0.
 struct CoulombContact {
     MotionVector direction{};  ///< the surface's normal
-    double rate = 0.0;         ///< along it, of the motion without forces
+    double rate = 0.0;         ///< rate along the direction, of the motion without forces
 };
 
-/// One resistance at a contact: |T| <= bound N, opposite to the rate if there is one.
+/// One resistance at a contact: |T| <= bound N. If a rate remains, T opposes it with the largest allowed force.
 struct CoulombResistance {
     std::uint32_t contact = 0;  ///< number of its contact, in the order of addition
     std::uint32_t size = 2;     ///< 1 or 2 directions
     double bound = 0.0;         ///< >= 0: a coefficient of friction, or a length over the radius
     std::array<MotionVector, 2> direction{};
-    std::array<double, 2> rate{};     ///< along them, of the motion without forces
-    bool is_moving = false;           ///< it acts against `heading`, whatever the rates
-    std::array<double, 2> heading{};  ///< unit; used if it is moving
+    std::array<double, 2> rate{};     ///< rates along the directions, of the motion without forces
+    bool is_moving = false;           ///< true: it acts against `heading`, independently of the rates
+    std::array<double, 2> heading{};  ///< unit vector; used if `is_moving`
 };
 
-/// The equations, their unknown forces, and iterations on these. Rates and forces are scaled: the largest free rate
-/// is 1. Large: keep it where it is.
+/// The equations, their unknown forces, and iterative solvers for them. Rates and forces are scaled: the largest free
+/// rate is 1. Objects are large, so do not copy them.
 class CoulombEquations {
 public:
     static constexpr std::size_t kMostContacts = 8;
@@ -56,7 +55,7 @@ public:
     static constexpr std::size_t kMostUnknowns = kMostContacts + 2 * kMostResistances;
     using Unknowns = std::array<double, kMostUnknowns>;
 
-    /// Contacts that yield by compliance times (force - anchor).
+    /// Compliance of contacts and resistances. Each one yields by `value` times (force - anchor).
     struct Compliance {
         double value = 0.0;
         Unknowns anchor{};
@@ -67,7 +66,7 @@ public:
     void add(const CoulombContact& contact) { contacts_[contact_count_++] = contact; }
     void add(const CoulombResistance& resistance) { resistances_[resistance_count_++] = resistance; }
     [[nodiscard]] std::size_t contacts() const { return contact_count_; }
-    /// Number of Gauss-Seidel sweeps since clear().
+    /// Returns the number of Gauss-Seidel sweeps since clear().
     [[nodiscard]] std::size_t sweeps() const { return sweeps_; }
 
     /// Sets all forces to 0 and scales the rates. friction: factor on all bounds. Returns the scale, 0 if all rates are
@@ -76,7 +75,7 @@ public:
     [[nodiscard]] double friction() const { return friction_; }
     void set_friction(double factor) { friction_ = factor; }
 
-    /// The forces: of the contacts, then of the resistances.
+    /// Returns the forces of the contacts, followed by the forces of the resistances.
     [[nodiscard]] const Unknowns& forces() const { return force_; }
     void set_forces(const Unknowns& forces) { force_ = forces; }
     /// Returns the forces of a resistance along its directions.
@@ -85,20 +84,22 @@ public:
     [[nodiscard]] double largest_change_from(const Unknowns& before) const;
     /// Returns the change of the motion by all forces together.
     [[nodiscard]] MotionVector change() const;
-    /// Removes forces that exceed their bounds by rounding, and the scale.
+    /// Limits forces that exceed their bounds by rounding, and multiplies all forces by the scale.
     void cut_to_bounds(double scale);
 
-    /// Returns true if no force changes another's rate, for example on one surface without resistance to rolling.
+    /// Returns true if no force changes the rate of another force, for example on one surface without rolling
+    /// resistance.
     [[nodiscard]] bool are_independent() const;
     /// Solves independent equations. Returns the largest defect.
     [[nodiscard]] double solve_independent();
     /// Returns the largest defect of the equations.
     double find_defects(const Compliance& compliance);
-    /// Newton's method. It halves a step while the largest defect does not shrink. Returns true if that is at most
-    /// `enough` in the end.
+    /// Applies Newton's method. Halves a step while the largest defect does not decrease. Returns true if the final
+    /// largest defect is at most `enough`.
     [[nodiscard]] bool newton(const Compliance& compliance, double enough);
-    /// Gauss-Seidel sweeps: every contact and resistance in turn answers the others. Returns true if forces diverge, as
-    /// in a wedge that friction jams: each sweep adds as much as the sweeps long before it.
+    /// Makes Gauss-Seidel sweeps, which solve every contact and resistance in turn for the current forces of the
+    /// others. Returns true if forces diverge, as in a wedge that friction jams: late sweeps change them as much as
+    /// early sweeps.
     [[nodiscard]] bool relax(const Compliance& compliance, int sweeps);
 
 private:
@@ -108,7 +109,7 @@ private:
         double size = 0.0;
         double most = 0.0;
         double gain = 0.0;
-        bool is_cut = false;  ///< to `most`
+        bool is_cut = false;  ///< true: the force exceeds `most` and is limited to it
     };
 
     void find_matrix(const Compliance& compliance);
@@ -127,11 +128,11 @@ private:
     std::size_t unknowns_ = 0;
     std::array<std::size_t, kMostResistances> first_;  // first unknown of each resistance
     std::array<MotionVector, kMostUnknowns> direction_;
-    std::array<Unknowns, kMostUnknowns> delassus_;  // products of the directions
+    std::array<Unknowns, kMostUnknowns> delassus_;  // dot products of the directions
     Unknowns free_rate_;
     Unknowns force_;
     Unknowns rate_;
-    Unknowns defect_;  // after eliminate(): the step that would remove it
+    Unknowns defect_;  // after eliminate(): the Newton step, to be subtracted from the forces
     std::array<Unknowns, kMostUnknowns> matrix_;
 };
 

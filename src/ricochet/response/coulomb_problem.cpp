@@ -10,29 +10,30 @@
 namespace ricochet {
 namespace {
 
-/// Gauss-Seidel sweeps before Newton's method is tried again, and whether they begin without forces. Local: starts of
-/// this search.
+/// Number of Gauss-Seidel sweeps before Newton's method is tried again. anew: true if they start from zero forces.
+/// Local: starting points of this search.
 struct Start {
     bool anew;
     int sweeps;
 };
 constexpr std::array<Start, 5> kStarts{{{false, 20}, {true, 30}, {false, 300}, {true, 1000}, {true, 6000}}};
-/// Number of short starts. The long ones begin without forces, and a failure at one compliance repeats at the next.
-/// They are tried once for a problem, with its full friction. Local: a limit of this search, whose result is checked.
+/// Number of short starts. Longer starts are tried only once per problem, with its full friction. Reason: they start
+/// from zero forces, so a failure at one compliance repeats at the next. Local: a limit of this search, whose result is
+/// checked.
 constexpr std::size_t kShortStarts = 3;
-/// Compliances, and sweeps without initial forces at each, at which another solution with full friction is searched for
-/// if forces diverge. One in a hundred of 1200 random problems with diverging forces has one. Local: starts of this
-/// search.
+/// Compliances at which another solution with full friction is searched for if forces diverge. The second array
+/// contains the numbers of sweeps from zero forces at each compliance. One in a hundred of 1200 random problems with
+/// diverging forces has such a solution. Local: starting points of this search.
 constexpr std::array kOthersAt{kStiffCompliance, 1e-8, 1e-6};
 constexpr std::array kSweepsToOther{30, 300};
-/// Compliances at which a short search begins, and sweeps before its second attempt. Reason: this solves all but one of
-/// 1600 problems of a ball that rolls over concave edges, and the way from soft contacts solves half. One in eighty of
-/// the random problems that both solve has several answers and gets another one. Local: starts of this search, whose
-/// result is checked.
+/// First and last compliance of a short search, and number of sweeps before its second attempt. Reason: this search
+/// solves all but one of 1600 problems of a ball that rolls over concave edges. Continuation from soft contacts solves
+/// only half of them. One in eighty of the random problems that both solve has several solutions, and the searches find
+/// different ones. Local: starting points of this search, whose result is checked.
 constexpr std::array kStiffAtOnce{1e-6, kStiffCompliance};
 constexpr int kSweepsAtOnce = 3;
-/// Local: the fastest stiffening of a short search; parts of the friction, and sweeps for each. kCoulombResidual
-/// decides when the problem is solved.
+/// Largest factor between successive compliances in a short search, number of parts in which friction is increased, and
+/// sweeps for each part. Local, because kCoulombResidual decides when the problem is solved.
 constexpr double kSomeStiffening = 0.2;
 constexpr int kFrictionParts = 16;
 constexpr int kSweepsOfPart = 100;
@@ -61,8 +62,8 @@ double CoulombProblem::solve_with_most(Effort effort, double friction) {
     return kTriedFriction.back();
 }
 
-/// Solves a single contact as a rigid one at once: it shares its load with none, and friction cannot wedge it. Returns
-/// false if Newton's method does not find the answer without initial forces.
+/// Solves a single contact as a rigid one, without continuation from soft contacts. A single contact shares its load
+/// with no other, and friction cannot wedge it. Returns false if Newton's method finds no solution from zero forces.
 bool CoulombProblem::solve_single() {
     if (equations_.newton({}, kCoulombStage)) {
         make_rigid();
@@ -73,8 +74,8 @@ bool CoulombProblem::solve_single() {
     return false;
 }
 
-/// Solves almost rigid contacts without the way from soft ones. The first compliance leaves no internal stress. Returns
-/// false if that finds no answer.
+/// Solves almost rigid contacts without continuation from soft contacts. The first compliance is large enough to leave
+/// no internal stress. Returns false if no solution is found.
 bool CoulombProblem::solve_at_once() {
     const auto solve_stiff = [&](double compliance) { return equations_.newton({compliance, {}}, kCoulombStage); };
     bool is_found = solve_stiff(kStiffAtOnce.front());
@@ -92,7 +93,7 @@ bool CoulombProblem::solve_at_once() {
     return false;
 }
 
-/// Makes contacts rigid, beginning at a stage that has been reached.
+/// Makes contacts rigid, starting from a stage that is already solved.
 void CoulombProblem::follow(const Reached& reached, Effort effort) {
     const bool is_stiff = make_stiff(reached, effort);
     if (is_stiff) make_rigid();
@@ -100,8 +101,8 @@ void CoulombProblem::follow(const Reached& reached, Effort effort) {
     if (!is_stiff || !(residual_ < kHopelessResidual)) residual_ = kHopelessResidual;
 }
 
-/// Follows the answer from soft contacts, for which it is unique, to stiff ones. If a long step loses it, tries shorter
-/// ones.
+/// Follows the solution from soft contacts, for which it is unique, to stiff contacts (numerical continuation). If a
+/// long step loses the solution, tries shorter steps. Returns false if they lose it, too.
 bool CoulombProblem::make_stiff(Reached reached, Effort effort) {
     may_try_long_ = effort == Effort::all;
     runs_away_ = false;
@@ -126,7 +127,7 @@ bool CoulombProblem::make_stiff(Reached reached, Effort effort) {
     }
 }
 
-/// Searches for an answer whose forces do not diverge, if those on the way from soft contacts do.
+/// Searches for a solution whose forces do not diverge. Used if forces diverge in the continuation from soft contacts.
 void CoulombProblem::look_elsewhere() {
     const Unknowns kept = equations_.forces();
     const double residual = residual_;
@@ -143,8 +144,9 @@ CoulombProblem::Reached CoulombProblem::Reached::next(double value, double large
     return {value, largest, value * largest >= kSteadyGiving * compliance * force};
 }
 
-/// Returns true if forces grow as contacts become stiff, so that contacts yield by as much as before. Rigid contacts
-/// then have no such answer. is_found: the answer at the compliance is known; else earlier growth decides.
+/// Returns true if forces grow so much, as contacts become stiffer, that contacts yield as much as before. This
+/// solution then has no rigid limit. is_found: true if the solution at `compliance` is known; otherwise earlier growth
+/// decides.
 bool CoulombProblem::runs_away(const Reached& reached, double compliance, bool is_found) const {
     const double giving = reached.compliance * reached.force;
     if (!is_found) return reached.is_steady && giving > kLostForce * compliance;
@@ -152,11 +154,12 @@ bool CoulombProblem::runs_away(const Reached& reached, double compliance, bool i
     return force > kRunawayForce && force * compliance >= kSteadyGiving * giving;
 }
 
-/// Makes stiff contacts rigid by proximal points: contacts that have yielded by as much as their forces demand yield no
-/// more. Weak contacts need little compliance for that, nearly redundant ones much. Each compliance is used while it
-/// gains a digit at a time.
+/// Makes stiff contacts rigid by proximal point iterations. Each iteration moves the compliance's anchor to the current
+/// forces, so that contacts yield only by the change of their forces. Weak contacts need a small compliance, nearly
+/// redundant contacts a large one. Each compliance is used while an iteration reduces the residual to less than a
+/// tenth.
 void CoulombProblem::make_rigid() {
-    // Local: steps of this search. find_defects() decides.
+    // Local: steps of this search, whose success find_defects() decides.
     constexpr std::array kCompliances{1e-8, 1e-10, 1e-12, 1e-14, 1e-6, 1e-4};
     double residual = equations_.find_defects({});
     for (const double compliance : kCompliances) {
@@ -174,7 +177,7 @@ void CoulombProblem::make_rigid() {
     }
 }
 
-/// Searches for an answer that Newton's method has not found from the given forces.
+/// Searches for a solution from other starting points, after Newton's method has failed from the given forces.
 bool CoulombProblem::solve_at(const Compliance& compliance, const Unknowns& given, Effort effort) {
     const std::size_t most = std::exchange(may_try_long_, false) ? kStarts.size() : kShortStarts;
     const std::size_t starts = effort == Effort::some ? 1 : most;
@@ -187,7 +190,7 @@ bool CoulombProblem::solve_at(const Compliance& compliance, const Unknowns& give
     return effort != Effort::some && grow_friction(compliance);
 }
 
-/// Searches for another answer, without initial forces.
+/// Searches for another solution, starting from zero forces.
 bool CoulombProblem::find_other(const Compliance& compliance) {
     const auto is_other = [&](bool is_found) { return is_found && equations_.largest_force() <= kRunawayForce; };
     for (const int sweeps : kSweepsToOther) {
@@ -198,7 +201,7 @@ bool CoulombProblem::find_other(const Compliance& compliance) {
     return is_other(grow_friction(compliance));
 }
 
-/// Begins without friction, for which the answer is unique, and adds friction in parts.
+/// Starts without friction, for which the solution is unique, and increases friction in parts.
 bool CoulombProblem::grow_friction(const Compliance& compliance) {
     const double whole = equations_.friction();
     equations_.set_forces({});

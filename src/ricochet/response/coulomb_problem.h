@@ -1,13 +1,14 @@
 /// \file
-/// Private to the responses: the small problem of rigid contact with Coulomb friction, for any mix of surfaces that
-/// touch one sphere or point at once, solved to rounding. coulomb_equations.h defines it.
+/// Private to the responses: solves the problem of rigid contact with Coulomb friction for one sphere or point, to
+/// rounding. Any mix of surfaces may touch it at once. coulomb_equations.h defines the problem.
 ///
-/// Rigid contacts can share their load in more than one way, and friction can hold a particle by wedging. The answer is
-/// the limit of the answers of compliant contacts as they become stiff. It has no internal stress without a cause, and
-/// it is the same every time. A short search (Effort::some) takes any answer of almost rigid contacts.
+/// The problem can have several solutions, because rigid contacts can share their load differently and friction can
+/// wedge a particle. The solver returns the limit of the solutions for compliant contacts as they become stiff. This
+/// limit has no internal stress without a cause and is reproducible. A short search (Effort::some) accepts any solution
+/// of almost rigid contacts.
 ///
 /// Source: R. T. Rockafellar, "Monotone operators and the proximal point algorithm", SIAM J. Control and Optimization
-/// 14 (1976), for the way from compliant to rigid contacts.
+/// 14 (1976), for the step from compliant to rigid contacts.
 #pragma once
 
 #include <array>
@@ -18,38 +19,38 @@
 
 namespace ricochet {
 
-/// The problem, and its answer. Large: keep it where it is.
+/// The problem and its solution. Objects are large, so do not copy them.
 class CoulombProblem {
 public:
     static constexpr std::size_t kMostContacts = CoulombEquations::kMostContacts;
     static constexpr std::size_t kMostResistances = CoulombEquations::kMostResistances;
 
-    /// How long an answer is searched for: `some` finds all but a few in a hundred of the answers that exist, `most`
-    /// all but one in a thousand.
+    /// Effort of the search. If a solution exists, `some` fails to find it in a few percent of all problems, and `most`
+    /// in one of a thousand.
     enum class Effort { some, most, all };
 
     /// Removes all contacts and resistances.
     void clear() { equations_.clear(); }
-    /// At most kMostContacts.
+    /// Adds a contact. There can be at most kMostContacts.
     void add(const CoulombContact& contact) { equations_.add(contact); }
-    /// At most kMostResistances, of contacts that have been added.
+    /// Adds a resistance of a contact that has been added. There can be at most kMostResistances.
     void add(const CoulombResistance& resistance) { equations_.add(resistance); }
     [[nodiscard]] std::size_t contacts() const { return equations_.contacts(); }
 
-    /// Returns true if the conditions are met to kCoulombResidual of the largest rate. An answer always exists if
-    /// nothing is moving, the rates belong to one motion, and another motion leaves all contacts. Otherwise wedging can
-    /// prevent one. friction: a factor on all bounds, 0..1.
+    /// Solves the problem. Returns true if the conditions are met to kCoulombResidual times the largest rate. A
+    /// solution always exists if no resistance is moving, all rates result from one motion, and some motion separates
+    /// all contacts. Otherwise wedging can prevent a solution. friction: factor on all bounds, 0..1.
     bool solve(Effort effort, double friction = 1.0);
 
-    /// Solves with as much of the friction as has an answer. All of it also counts if rounding leaves the conditions
-    /// met only to kNearlySolved, as between surfaces that press against each other. Otherwise less friction is tried,
-    /// down to none, with the effort `most` at most. Returns the part of the friction.
+    /// Solves the problem with the largest part of the friction for which a solution is found, and returns this part.
+    /// Conditions met only to kNearlySolved suffice, because rounding can prevent more between surfaces that press
+    /// against each other. Smaller parts, down to zero, are tried with an effort of at most `most`.
     double solve_with_most(Effort effort, double friction = 1.0);
 
-    /// Returns false if the last answer meets the conditions only to kNearlySolved, or not at all.
+    /// Returns false if the last solution meets the conditions only to kNearlySolved, or not at all.
     [[nodiscard]] bool is_solved() const { return residual_ <= kCoulombResidual; }
 
-    /// Number of sweeps over the contacts since clear(): the cost of an answer, or of finding that there is none.
+    /// Returns the number of sweeps over the contacts since clear(), a measure of the cost of the search.
     [[nodiscard]] std::size_t sweeps() const { return equations_.sweeps(); }
 
     /// Returns the force of a contact.
@@ -65,11 +66,11 @@ private:
     using Unknowns = CoulombEquations::Unknowns;
     using Compliance = CoulombEquations::Compliance;
 
-    /// A stage on the way to stiff contacts.
+    /// A solved stage of the continuation from soft to stiff contacts.
     struct Reached {
         double compliance = 1.0;
-        double force = 0.0;      ///< the largest
-        bool is_steady = false;  ///< contacts yield by as much as before, though they are stiffer
+        double force = 0.0;      ///< largest force
+        bool is_steady = false;  ///< true: contacts yield as much as before, although they are stiffer
         [[nodiscard]] Reached next(double value, double largest) const;
     };
 
@@ -85,9 +86,9 @@ private:
     [[nodiscard]] bool grow_friction(const Compliance& compliance);
 
     CoulombEquations equations_;
-    bool may_try_long_ = false;  // for this answer
-    bool runs_away_ = false;     // on the last way to stiff contacts
-    double residual_ = 0.0;      // of the last answer, as a part of the largest rate
+    bool may_try_long_ = false;  // true: solve_at() may try the longer starts once
+    bool runs_away_ = false;     // true if forces diverged in the last make_stiff()
+    double residual_ = 0.0;      // of the last solution, relative to the largest rate
 };
 
 }  // namespace ricochet

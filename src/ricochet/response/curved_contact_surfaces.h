@@ -1,5 +1,5 @@
 /// \file
-/// The surfaces that hold a particle on an arc, as seen from the start of the arc.
+/// Surfaces that support a particle along an arc. The side of the particle is determined at the start of the arc.
 #pragma once
 
 #include <array>
@@ -13,19 +13,20 @@ namespace ricochet {
 
 class CurvedContactSurfaces {
 public:
-    /// particle: at the start of the arc, in contact with the surfaces of the manifold.
+    /// particle: state at the start of the arc, in contact with the surfaces of the manifold.
     CurvedContactSurfaces(const SurfaceGeometry& geometry, const ForceInput& particle, const ContactManifold& manifold);
 
     [[nodiscard]] SurfaceId id(std::size_t k) const { return of_[k].surface; }
-    /// Returns the nearest point of surface k, on the particle's side at the start. Within an arc a point may get
-    /// behind the surface by the arc's own error. A face or side continues beyond its rim.
+    /// Returns the nearest point of surface k. Its normal points to the particle's side at the start, because
+    /// integration errors can put a position on the arc behind the surface. A face or side is extended beyond its rim.
     [[nodiscard]] CollisionWorld::Nearest nearest(std::size_t k, const Vec3& position) const;
-    /// Returns the largest change of a shape's normal under a sphere between the start and a position. It uses outward
-    /// normals: a position straight ahead may lie behind a large shape's surface, where the direction to the surface is
-    /// reversed.
+    /// Returns the largest change of the normal of a touched shape between the start and a position; 0 for a point. It
+    /// uses outward normals, because a position straight ahead may lie behind the surface of a large shape. The
+    /// direction to the surface is reversed there.
     [[nodiscard]] double turned_at(const Vec3& position) const;
-    /// Returns the overlap, in m, that a sphere keeps with curved surface k: the one at the start, if the sphere was
-    /// spawned so deep in the surface that placing it on the surface would be a jump. Smaller overlaps are removed.
+    /// Returns the overlap, in m, that a sphere keeps with curved surface k. A sphere that was spawned deep in the
+    /// surface keeps its overlap at the start, because moving it onto the surface would be a jump. Smaller overlaps are
+    /// removed; the result is then 0.
     [[nodiscard]] double overlap(std::size_t k) const { return of_[k].overlap; }
 
 private:

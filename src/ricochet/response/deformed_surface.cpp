@@ -14,7 +14,8 @@
 namespace ricochet {
 namespace {
 
-/// Halvings in the search for the time at the rim. Local: it ends below the rounding of the result.
+/// Number of halvings in the bisection for the time at the rim. Local, because the bisection ends below the rounding of
+/// its result.
 constexpr int kRimHalvings = 48;
 
 /// A triangle within touching distance.
@@ -24,8 +25,9 @@ struct Candidate {
     bool is_left = false;
 };
 
-/// Returns the distance, in m, by which the foot of a position lies beside a triangle. It is measured along the
-/// triangle's plane: the difference of the distances to the rim and to the plane would be rounding of a few offsets.
+/// Returns the distance, in m, of a triangle from the projection of a position onto the triangle's plane. It is
+/// computed in this plane. The difference of the distances to rim and plane would have rounding errors of a few contact
+/// offsets.
 double beyond_rim(const DeformedTriangle& triangle, const Vec3& p) {
     if (!triangle.nearest(p).rim) return 0.0;
     const Vec3 offset = closest_point_on_triangle(p, triangle.a, triangle.b, triangle.c).offset;
@@ -33,8 +35,8 @@ double beyond_rim(const DeformedTriangle& triangle, const Vec3& p) {
     return length(offset - dot(offset, normal) * normal);
 }
 
-/// Returns true if a point touches a triangle from above, or stands on its rim and moves no further beyond it. A point
-/// above a convex edge is over neither face, because of its height.
+/// Returns true if a point is over a triangle, or is beside its rim and does not move farther away from it. The second
+/// case is needed because a point slightly above a convex edge is over neither face.
 bool is_point_over(const DeformedTriangle& triangle, double offset, const Vec3& p, const Vec3& velocity,
                    const Vec3& normal, double separation_speed) {
     const double beyond = beyond_rim(triangle, p);
@@ -58,7 +60,7 @@ std::optional<Candidate> touched(const DeformingColliders& deforming, const Forc
     const Vec3 velocity = particle.velocity - mesh.motion_at(surface, p, particle.time).velocity;
     if (particle.radius == 0.0) {
         if (nearest.rim) {
-            // The direction from the rim is mere rounding, so the plane's normal is used.
+            // The direction from the rim consists of rounding errors, so the plane's normal is used.
             const Vec3 normal = triangle.unit_normal();
             found.contact.surface = {surface, triangle.signed_distance_from(p) < 0.0 ? -normal : normal, true};
         }
@@ -69,8 +71,8 @@ std::optional<Candidate> touched(const DeformingColliders& deforming, const Forc
     return found;
 }
 
-/// Returns true if a triangle lies behind the plane of another triangle below the particle. The particle would meet
-/// that one first.
+/// Returns true if a triangle lies behind the plane of another triangle, `over`, below the particle. The particle would
+/// reach `over` first.
 bool is_behind(const DeformingColliders& deforming, double time, SurfaceId surface, const ContactSurface& over) {
     const auto [a, b, c] = deforming.triangle_at(surface, time);
     const double tolerance = 2.0 * deforming.mesh_with(surface).offset();
@@ -80,14 +82,14 @@ bool is_behind(const DeformingColliders& deforming, double time, SurfaceId surfa
     return is_low(a) && is_low(b) && is_low(c);
 }
 
-/// Returns true if two triangles lie in one plane. Their common edge is not felt.
+/// Returns true if two triangles lie in one plane, so that their common edge has no effect.
 bool are_coplanar(const Candidate& one, const Candidate& other) {
     return 1.0 - dot(one.contact.surface.normal, other.contact.surface.normal) <= kSameNormal;
 }
 
-/// Removes triangles beyond convex edges from the contacts of a point. A triangle beside the point stays if it is in
-/// front of all triangles below the point, like the other side of a blunt valley. It also stays if it is in one plane
-/// with them: rounding decides on which side of their edge the point is.
+/// Removes triangles beyond convex edges from the contacts of a point. A triangle beside the point is kept if it is in
+/// front of all triangles below the point. The other side of a wide valley is an example. A triangle coplanar with them
+/// is also kept, because rounding decides on which side of the common edge the point is.
 void drop_beyond_convex_edges(const DeformingColliders& deforming, const ForceInput& particle,
                               std::vector<Candidate>& found) {
     const auto is_inside = [&](const Candidate& one) {
@@ -115,7 +117,8 @@ double seam_turn(const DeformingColliders& deforming, const ForceInput& particle
     return kSeamTurn + 2.0 * kTouchingOffsets * deforming.mesh_with(surface).offset() / particle.radius;
 }
 
-/// Returns true if a triangle beside a sphere lies in the plane of a face that holds the sphere, until the next key.
+/// Returns true if a triangle beside a sphere lies in the plane of a supporting face, and stays in this plane until the
+/// next key time.
 bool goes_on_as_one_plane(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface,
                           const ContactSurface& face) {
     const Vec3& p = particle.position;
@@ -135,8 +138,8 @@ bool goes_on_as_one_plane(const DeformingColliders& deforming, const ForceInput&
     return length(turn_there - turn_here) <= kSameVelocity * scale;
 }
 
-/// Adds triangles that continue the plane of a contact. A sphere that rolls over the edge of a face reaches them, and
-/// they are no obstacle.
+/// Adds triangles that continue the plane of a contact. A sphere that rolls over the edge of the face reaches these
+/// triangles, and they must not be obstacles.
 void add_rest_of_planes(const DeformingColliders& deforming, const ForceInput& particle,
                         const std::vector<SurfaceId>& near, std::vector<DeformedContact>& all) {
     for (DeformedContact& contact : all) {
@@ -224,7 +227,7 @@ double time_over(const DeformingColliders& deforming, const DeformedContact& con
     const auto is_over = [&](double at) { return beyond_all(at) <= most; };
     if (is_over(duration)) return duration;
     const double off = bisect(0.0, duration, kRimHalvings, is_over).high;
-    // A time below the resolution of the clock would not lead off the triangle.
+    // An added time below the resolution of the clock would not move the particle off the triangle.
     return std::min(off + std::max(kPastRim * duration, kSimultaneousUlps * ulp(begin)), duration);
 }
 

@@ -17,7 +17,7 @@ PairBody body_of(const IslandMember& member) {
     const MovingParticle& moving = member.moving;
     const double radius = member.radius();
     const bool is_fixed = member.is_fixed || member.is_cut_off;
-    // A core has a higher angular velocity, so that its surface moves as fast.
+    // A core spins faster than the whole sphere, so that both surfaces move at the same speed.
     PairBody body = pair_body(moving.state.position, is_fixed ? Vec3{} : moving.state.velocity,
                               (moving.state.radius / radius) * moving.spin, moving.state.mass, radius, is_fixed);
     body.material = member.material;
@@ -64,8 +64,8 @@ bool EventIsland::exceeds(const ImpactLimit& limit) const {
     return impacts_.size() > limit.in_all || most_of_one_ > limit.of_each;
 }
 
-/// Returns true if two members that last for the whole step overlap at the ends of their paths. is: a further condition
-/// on the pair.
+/// Returns true if two members that exist for the whole step press on each other, see has_sunk(). is: a further
+/// condition on the pair.
 template <class Is>
 bool EventIsland::any_sinks(const Is& is) const {
     const auto is_there = [](const IslandMember& member) { return !member.is_gone() && !member.is_cut_off; };
@@ -89,8 +89,8 @@ bool EventIsland::sinks() const {
     return any_sinks([](std::size_t, std::size_t) { return true; });
 }
 
-/// Returns true if two members press on each other, before any impact. Impacts without rebound would never complete the
-/// step for them. A member that a wall throws into another one does rebound.
+/// Returns true if two members press on each other before any impact. Such a pair would make impacts without rebound
+/// and never complete the step. A member that bounces off a wall is excluded, because it rebounds.
 bool EventIsland::presses() const {
     const double resting = response_.rules().settings.resting_speed;
     return any_sinks([&](std::size_t m, std::size_t other) {
@@ -134,12 +134,13 @@ void EventIsland::predict(std::size_t m) {
     prediction.outcome = response_.move(prediction.moved, duration, *scratch_);
     prediction.lists.take(*scratch_);
     prediction.flown.swap(scratch_->flown);
-    // Without flight, the member stays: it cannot be followed, or no time is left.
+    // Without a flown path the member keeps its position: its path cannot be followed, or no time is left.
     if (prediction.flown.empty()) {
         stay(m);
         return;
     }
-    // A member that has spent its bounces on walls waits there, and others may reach it. Moving walls carry it along.
+    // A member that has exhausted its bounce budget waits at the last wall, where other members may reach it. Moving
+    // walls carry it along.
     if (const double left = prediction.outcome.unsimulated_time; left > 0.0 && !prediction.outcome.is_absorbed()) {
         const FlownPiece& last = prediction.flown.back();
         const double begin = last.begin + last.duration;
@@ -164,8 +165,9 @@ void EventIsland::stay(std::size_t m) {
     boxes_[m] = grown({state.position, state.position}, member.radius());
 }
 
-/// Moves a member to a time along its predicted path. If it bounces off a wall just then, it bounces first: the other
-/// member has met it on its way back. An example is a member on a floor that is hit.
+/// Moves a member to a time along its predicted path. If the member bounces off a wall at the same time, the bounce
+/// comes first, because the other member meets it after the bounce. An example is a member on a floor that another one
+/// hits.
 void EventIsland::bring(std::size_t m, double time) {
     const IslandMember& member = (*members_)[m];
     if (is_still(m)) return;
@@ -174,8 +176,9 @@ void EventIsland::bring(std::size_t m, double time) {
     if (!member.is_gone() && just_after < member.end && bounces_at(m, time)) go_to(m, just_after);
 }
 
-/// Returns true if two members do not meet after all: one is gone, has lost time on its path, or its path along a wall
-/// that turns fast differs from the predicted one.
+/// Returns true if a predicted contact of two members does not occur. One of them may be gone or may have lost time on
+/// its path. Its path along a wall may also differ from the prediction, because arcs are planned again up to the time
+/// of impact.
 bool EventIsland::is_missed(const PairContact& contact, double time) const {
     const IslandMember& a = (*members_)[contact.first];
     const IslandMember& b = (*members_)[contact.second];
@@ -243,7 +246,7 @@ void EventIsland::fly_freely(IslandMember& member, double duration) {
     scratch_->flown.push_back({flight.path, begin, duration, initial_velocity, state.velocity, true});
 }
 
-/// Makes the prediction of a member its result.
+/// Stores the prediction of a member as its result.
 void EventIsland::commit(std::size_t m) {
     IslandMember& member = (*members_)[m];
     Prediction& prediction = predictions_[m];
@@ -261,7 +264,7 @@ void EventIsland::commit(std::size_t m) {
 
 std::optional<double> EventIsland::meeting_of(std::size_t a, std::size_t b) const {
     if ((*members_)[a].is_fixed && (*members_)[b].is_fixed) return std::nullopt;
-    // The order is fixed, so that both find the same time.
+    // The order is fixed, so that both members find the same time.
     if ((*members_)[a].particle > (*members_)[b].particle) std::swap(a, b);
     const std::vector<FlownPiece>& first = predictions_[a].flown;
     const std::vector<FlownPiece>& second = predictions_[b].flown;
@@ -271,7 +274,7 @@ std::optional<double> EventIsland::meeting_of(std::size_t a, std::size_t b) cons
     return first_meeting(std::span(first), std::span(second), distance, rounding);
 }
 
-/// Notes a contact of a member if it is earlier than its next one.
+/// Records a contact of a member if it is earlier than the recorded one.
 void EventIsland::note(std::size_t m, double time, std::size_t partner) {
     if (!(time < times_.time_of(m))) return;
     times_.set(m, time);
@@ -350,7 +353,7 @@ std::vector<PairContact> EventIsland::contacts_at(double time) const {
     return contacts;
 }
 
-/// Keeps the fastest contact, and those as fast, so that the order of members does not matter.
+/// Keeps only the contacts with the highest approach speed, so that the order of members does not matter.
 void EventIsland::keep_fastest(std::vector<PairContact>& contacts, double time) const {
     if (contacts.size() < 2) return;
     double fastest = -std::numeric_limits<double>::infinity();
@@ -360,7 +363,8 @@ void EventIsland::keep_fastest(std::vector<PairContact>& contacts, double time) 
         contact.approach = approach_of({a.position, a.velocity, {}}, {b.position, b.velocity, {}});
         fastest = std::max(fastest, contact.approach);
     }
-    // By rounding, all may separate. One contact is kept, counts as an impact, and lets its members continue.
+    // Because of rounding, all contacts may be separating. One contact is then still kept and counts as an impact, so
+    // that its members continue.
     const double least = fastest > 0.0 ? fastest * (1.0 - kSameApproach) : fastest;
     std::erase_if(contacts, [&](const PairContact& contact) { return contact.approach < least; });
 }
@@ -372,7 +376,7 @@ void EventIsland::resolve(std::vector<PairContact>& contacts, double time) {
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
     for (const std::size_t m : changed) bring(m, time);
-    // Missed contacts count, too, so that every step ends.
+    // Missed contacts count as impacts, too, so that every step ends.
     for (const PairContact& contact : contacts) {
         for (const std::size_t m : {contact.first, contact.second}) {
             most_of_one_ = std::max(most_of_one_, ++(*members_)[m].impacts);
@@ -410,7 +414,7 @@ void EventIsland::resolve(std::vector<PairContact>& contacts, double time) {
 /// Sets a member's motion after an impact. Its contacts with surfaces are found again.
 void EventIsland::write_back(std::size_t m, const PairBody& body) {
     IslandMember& member = (*members_)[m];
-    member.is_free = false;  // also if it is hit at the start of the step, without a move
+    member.is_free = false;  // go_to() does not clear it for a member that is hit at the start of the step
     MovingParticle& moving = member.moving;
     const RecordedMotion before{moving.state.position, moving.state.velocity, moving.spin};
     member.pair_velocity_change += body.velocity - moving.state.velocity;
@@ -441,7 +445,7 @@ void EventIsland::go_on(std::size_t m) {
     member.moving.step_end = member.end;
 }
 
-/// Plans the rest of a step in which forces have already acted by a kick at the start.
+/// Plans the rest of a step in which forces have already acted as a kick at the start.
 void EventIsland::resume(std::size_t m) {
     const ResponseRules& rules = response_.rules();
     MovingParticle& moving = (*members_)[m].moving;

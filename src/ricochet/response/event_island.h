@@ -2,11 +2,11 @@
 /// An event-driven island: spheres that can touch each other in a step, and no others. Its impacts are solved in order
 /// of time.
 ///
-/// Every member has its true path to the end of the step, as if it met no other member. The path consists of the
-/// polynomial pieces along which the response has moved it, including bounces off walls and contact with them. The
-/// first contact between two of those paths is an impact. Both members are moved to that time along the same paths,
-/// exchange impulses, and get new paths.
-/// Source: B. D. Lubachevsky, "How to simulate billiards and similar systems", J. Comput. Phys. 94 (1991).
+/// Every member has a predicted path to the end of the step on which it meets no other member. The path consists of the
+/// polynomial pieces along which the response moves the member, including bounces off walls and contact with them. The
+/// first contact between two of these paths is an impact. Both members are moved to that time along the same paths,
+/// exchange impulses, and get new paths. Source: B. D. Lubachevsky, "How to simulate billiards and similar systems", J.
+/// Comput. Phys. 94 (1991).
 #pragma once
 
 #include <cstddef>
@@ -33,20 +33,20 @@ struct IslandMember {
     std::size_t particle = 0;    ///< index in the particles' arrays
     MovingParticle moving;       ///< at the time moving.state.time
     double end = 0.0;            ///< s, end of its part of the step
-    bool is_fixed = false;       ///< it is fixed
-    bool is_free = false;        ///< it certainly touches no wall unless it meets another member
-    std::uint32_t material = 0;  ///< its number in PairMaterials
+    bool is_fixed = false;       ///< the member never moves
+    bool is_free = false;        ///< it certainly touches no wall before it meets another member
+    std::uint32_t material = 0;  ///< index in PairMaterials
     // Output:
     MoveOutcome outcome{};
     MoveLists lists{};
     std::uint32_t impacts = 0;    ///< number of impacts on other members
     Vec3 pair_velocity_change{};  ///< m/s, by impacts and contact with other members
     bool is_planned = false;      ///< its motion was planned by a contact island
-    double contact_path = 0.0;    ///< m, length of its trajectory along walls, on arcs
+    double contact_path = 0.0;    ///< m, length of the part of its trajectory in contact with walls
     bool is_cut_off = false;      ///< it has spent its impact budget
     Box3 swept{};                 ///< bounding box of the whole sphere on its whole trajectory
-    bool keeps_path = false;      ///< input: the trajectory is needed even if it keeps to its declared bounds
-    /// It has met other members, or others act on it from a distance, so that it may leave its declared bounds.
+    bool keeps_path = false;      ///< input: `trajectory` is needed even if the member stays within its declared bounds
+    /// True if it has met other members, or others act on it from a distance. It may then leave its declared bounds.
     bool has_left_bounds = false;
     /// Its whole trajectory, if it has left its bounds, or if keeps_path is set.
     std::vector<FlownPiece> trajectory{};
@@ -58,8 +58,8 @@ struct IslandMember {
     }
     /// Returns true if the member no longer moves: it is absorbed or frozen.
     [[nodiscard]] bool is_gone() const { return outcome.is_absorbed() || outcome.is_frozen(); }
-    /// Returns the rest of its part of the step, in s. At the start of its planned flight, this is the exact duration
-    /// of that.
+    /// Returns the rest of its part of the step, in s. At the start of its planned flight this is exactly the duration
+    /// of the flight.
     [[nodiscard]] double time_left() const {
         const bool begins_flight = moving.planned != nullptr && moving.planned->start.time == moving.state.time;
         return begins_flight ? moving.planned->path.duration : end - moving.state.time;
@@ -70,24 +70,24 @@ struct IslandMember {
     }
 };
 
-/// Limits on the impacts between members of an island in a step. The island is given up if they are exceeded.
+/// Limits on the impacts between members of an island in a step. The run of an island is aborted if they are exceeded.
 struct ImpactLimit {
     std::size_t in_all = std::numeric_limits<std::size_t>::max();
     std::uint32_t of_each = std::numeric_limits<std::uint32_t>::max();  ///< impacts of one member
-    bool may_sink = true;   ///< false: the island is also given up if forces drive members into each other
-    bool may_press = true;  ///< false: given up at once if that holds for two that touch and would not rebound
+    bool may_sink = true;   ///< false: the run is also aborted if forces drive members into each other
+    bool may_press = true;  ///< false: aborted at the start if forces press together two members that touch
 };
 
 /// Solves event-driven islands, one after another, and reuses its memory. For one thread.
 class EventIsland {
 public:
-    /// Both must outlive it.
+    /// The response and the materials must outlive the object.
     EventIsland(const Response& response, const PairMaterials& materials, std::uint32_t impact_budget)
         : response_(response), materials_(materials), impact_budget_(impact_budget) {}
 
     /// Moves the members to the end of the step. The result does not depend on their order, except for the last bits of
-    /// impacts that share members. scratch: selects the records; its lists are used. Returns false if there are more
-    /// impacts than the limit. The positions of the members are then undefined.
+    /// impacts that share members. scratch: selects the records to write; its lists are overwritten. Returns false if
+    /// `limit` is exceeded. The positions of the members are then undefined.
     bool run(std::vector<IslandMember>& members, MoveScratch& scratch, const ImpactLimit& limit = {});
 
     /// Returns the impacts of the last run, in order of time.
@@ -144,11 +144,11 @@ private:
     std::vector<IslandMember>* members_ = nullptr;
     MoveScratch* scratch_ = nullptr;
     std::vector<Prediction> predictions_;
-    std::vector<Vec3> begin_;  // m, of the members at the start
+    std::vector<Vec3> begin_;  // m, positions of the members at the start
     std::vector<Box3> boxes_;  // bounding boxes of the predictions
     IslandNeighbours neighbours_;
     EarliestTime times_;                 // s, first contact of each member; infinite without one
-    std::vector<std::size_t> partners_;  // of the members at that time
+    std::vector<std::size_t> partners_;  // other member of each of these contacts
     std::uint32_t most_of_one_ = 0;      // largest number of impacts of one member
     std::vector<Flight> resumed_;        // one per member, if a kick has acted in this step
     std::vector<PairImpactRecord> impacts_;

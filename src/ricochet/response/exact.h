@@ -4,16 +4,16 @@
 ///
 /// Source: continuous collision detection against static surfaces with exact predicates, see ARCHITECTURE.md.
 ///
-/// Guarantees: the chain of a particle's positions crosses no surface, exactly. Spheres overlap nothing by more than
-/// sphere_tolerance(). The time of impact is accurate to rounding on the path.
+/// Guarantees: the chain of a particle's positions crosses no surface, which is decided in exact arithmetic. Spheres
+/// overlap no surface by more than sphere_tolerance(). The time of impact on the path is accurate to rounding.
 ///
 /// Limits:
 /// - A bounce cascade below the resting speed is not resolved impact by impact, but summed in closed form.
 /// - Slow circling in a pit is not followed to its end: it becomes rest (kMaxSlowContacts).
-/// - A particle that has spent its bounce budget does not use the whole step. The rest is counted.
+/// - A particle that exceeds its bounce budget does not use the whole step. The rest is counted as unsimulated time.
 ///
-/// Lasting contact is exact on flat surfaces under constant forces while slip keeps its direction. Otherwise it is of
-/// second order or better (docs/responses.md).
+/// Lasting contact is exact on flat surfaces under constant forces while the slip keeps its direction. Otherwise its
+/// integration is of second order or better (docs/responses.md).
 #pragma once
 
 #include <vector>

@@ -37,7 +37,8 @@ PlannedInterval FlatInterval::mean_until(double time) const {
 
 double FlatInterval::work_until(double time, const Vec3& displacement) const {
     const PlannedInterval mean = mean_until(time);
-    // The mean force over the displacement misses that changes of force and of velocity are correlated.
+    // Mean force times displacement neglects the correlation between the changes of force and of velocity. `later` adds
+    // it.
     const double later = time * time / 6.0 * dot(mean.forces - begin_.forces, mean.interval.acceleration);
     return dot(mean.forces, displacement) + later;
 }

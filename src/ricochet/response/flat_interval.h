@@ -10,19 +10,19 @@
 
 namespace ricochet {
 
-/// A contact interval, and the forces over the mass with which it was planned, in m/s^2.
+/// A contact interval, and the forces per unit mass, in m/s^2, with which it was planned.
 struct PlannedInterval {
     ContactInterval interval;
     Vec3 forces;
 };
 
-/// A contact interval along flat surfaces, planned with the forces at its start and in its middle. Accelerations change
-/// linearly between them. This is the midpoint rule if the interval is completed, and of second order if it ends
-/// earlier. If friction turns on one surface, the interval follows the equations of the slip instead, under constant
-/// forces.
+/// A contact interval along flat surfaces, planned with the forces at its start and in its middle. Accelerations are
+/// linear in time through both values. This is the midpoint rule if the interval is completed, and still of second
+/// order if it ends earlier. If the friction on a single surface changes its direction, the interval integrates the
+/// slip equations instead, under constant forces.
 class FlatInterval {
 public:
-    /// For constant forces.
+    /// Creates an interval under constant forces.
     explicit FlatInterval(const PlannedInterval& plan) : begin_(plan), middle_(plan) {}
     FlatInterval(const PlannedInterval& begin, const PlannedInterval& middle)
         : begin_(begin), middle_(middle), varies_(true) {}
@@ -36,9 +36,10 @@ public:
     [[nodiscard]] bool turns() const { return slip_.has_value(); }
     /// Returns the path from x in the first `time` seconds.
     [[nodiscard]] Path path(const Vec3& x, double time) const;
-    /// Returns the same motion after `time` seconds, but with constant accelerations and forces.
+    /// Returns an interval with constant accelerations and forces that gives the same motion after `time` seconds.
     [[nodiscard]] PlannedInterval mean_until(double time) const;
-    /// Returns the work of the forces over the mass, in m^2/s^2, in the first `time` seconds, with this displacement.
+    /// Returns the work of the forces per unit mass, in m^2/s^2, in the first `time` seconds. displacement:
+    /// displacement in this time, in m.
     [[nodiscard]] double work_until(double time, const Vec3& displacement) const;
 
 private:

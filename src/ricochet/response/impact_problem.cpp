@@ -29,8 +29,8 @@ public:
     }
 
 private:
-    /// Adds a surface. If several have the same normal, the first one counts, or one with a faster approach by more
-    /// than rounding.
+    /// Adds a surface. If several have the same normal, only the first one is used, or a later one whose approach is
+    /// faster by more than rounding.
     void add(std::size_t surface) {
         const ImpactSurface& added = surfaces_[surface];
         if (!added.is_support && separation_speed(added) < 0.0)
@@ -90,7 +90,7 @@ private:
         return solution();
     }
 
-    /// Returns the impact with the impulses of `result`, which has no rebound, and their part e once more.
+    /// Returns the impact with 1 + e times the impulses of `result`, which has no rebound.
     [[nodiscard]] ImpactResult repeated(ImpactResult result) const {
         result.after.velocity += restitution_ * (result.after.velocity - before_.velocity);
         result.after.spin += restitution_ * (result.after.spin - before_.spin);
@@ -99,8 +99,8 @@ private:
         return result;
     }
 
-    /// Removes the approach to surfaces that hold the particle. Its normal speed there is rounding, and repeated
-    /// impulses would reverse it.
+    /// Removes the approach to supporting surfaces. The normal speed there is a rounding error, and the factor 1 + e on
+    /// the impulses can turn it into an approach.
     void keep_supported_only(ImpactResult& result) const {
         std::array<Vec3, ImpactResult::kMostSurfaces> normals;
         std::array<double, ImpactResult::kMostSurfaces> lifts{};
@@ -144,7 +144,7 @@ private:
         return result;
     }
 
-    /// Returns the rounding of twice the energy over the mass, in m^2/s^2. It is larger if surfaces press against each
+    /// Returns the rounding error of twice_kinetic(), in m^2/s^2. The error is larger if surfaces press against each
     /// other.
     [[nodiscard]] double rounding(const ImpactResult& result) const {
         double squared_pushes = twice_kinetic(before_, radius_);
@@ -156,7 +156,8 @@ private:
         return twice_kinetic(result.after, radius_) > most_allowed(result) + rounding(result);
     }
 
-    /// Returns twice the energy over the mass before the impact, with the work of moving surfaces.
+    /// Returns the largest allowed twice_kinetic() after the impact: its value before, plus twice the work of moving
+    /// surfaces per unit mass.
     [[nodiscard]] double most_allowed(const ImpactResult& result) const {
         double sum = twice_kinetic(before_, radius_);
         for (std::size_t k = 0; k < surfaces_.size(); ++k) {
@@ -165,7 +166,7 @@ private:
         return sum;
     }
 
-    /// Scales the motion so that rounding adds no energy. After an impact without losses, the energy is exactly kept.
+    /// Scales the motion so that rounding adds no energy. An impact without losses keeps the energy exactly.
     [[nodiscard]] ImpactResult kept(ImpactResult result) const {
         if (is_driven_) return result;
         const double is = twice_kinetic(result.after, radius_);
@@ -185,7 +186,7 @@ private:
     double radius_;
     std::span<const ImpactSurface> surfaces_;
     double restitution_ = 1.0;
-    bool is_driven_ = false;  // a surface moves
+    bool is_driven_ = false;  // true if a surface moves
     std::size_t count_ = 0;   // number of different normals
     std::array<std::size_t, ImpactResult::kMostSurfaces> surface_of_{};
     CoulombProblem problem_;

@@ -16,7 +16,7 @@ struct ImpactSurface {
     Vec3 normal;               ///< unit, towards the particle
     double restitution = 1.0;  ///< 0..1, at this approach speed
     double friction = 0.0;     ///< Coulomb coefficient
-    /// Resistance as in Material. Only for a landing without a rebound.
+    /// Resistance to rolling and spinning, as in Material. Used only for a landing without a rebound.
     double rolling_friction = 0.0;
     double spinning_friction = 0.0;  ///< m
     /// Velocity of the surface and its material at the contact, in m/s, and angular velocity of the material, in rad/s;
@@ -25,8 +25,8 @@ struct ImpactSurface {
     Vec3 angular_velocity{};
     /// Speed of the surface towards the particle, in m/s; part of `velocity`.
     double advance = 0.0;
-    /// The particle is in lasting contact with the surface. A remaining approach speed is rounding and causes no
-    /// rebound of its own.
+    /// True if the particle is in lasting contact with the surface. A remaining approach speed is a rounding error and
+    /// causes no rebound of its own.
     bool is_support = false;
 };
 
@@ -35,24 +35,25 @@ struct ImpactResult {
     static constexpr std::size_t kMostSurfaces = CoulombProblem::kMostContacts;
 
     Motion after;
-    /// Velocity change by each surface, in m/s: its impulse over the mass. In the order of the surfaces.
+    /// Velocity change by each surface, in m/s (its impulse per unit mass), in the order of the surfaces.
     std::array<Vec3, kMostSurfaces> velocity_change{};
 };
 
 /// Returns the motion after an impact of a point (radius 0) or solid sphere with surfaces that it touches, at most
 /// kMostSurfaces. Surfaces with the same normal count as one. Kinetic energy never grows.
 ///
-/// All surfaces use one restitution e: the smallest of the surfaces that the particle approaches and that do not hold
-/// it. Let u- and u+ be the normal velocities before and after the impact. Then u+ + e u- >= 0, the impulses are >= 0,
-/// and one of the two is zero (Moreau's law). For a surface that holds the particle, the first condition is u+ >= 0.
-/// Friction sticks where possible. Otherwise it acts against the remaining slip.
+/// All surfaces use one restitution e: the smallest among the approached surfaces that do not support the particle. Let
+/// u- and u+ be the normal velocities before and after the impact. Then u+ + e u- >= 0, the impulses are >= 0, and one
+/// of the two is zero (Moreau's law). For a supporting surface, the first condition is u+ >= 0. Friction stops the slip
+/// if possible. Otherwise it acts against the remaining slip.
 ///
-/// In wedges that friction can hold, this law may have no solution, or one that adds energy. The impulses are then 1 +
-/// e times the impulses of the impact without rebound (Poisson's law with one e for all impulses). The normal
-/// velocities are the same, but stopped slip comes back e times as fast. Rebounds surface by surface do not have this
-/// property: in narrow wedges they multiply energy.
+/// In wedges in which friction can hold a particle, this law may have no solution, or one that adds energy. The
+/// impulses are then 1 + e times the impulses of the impact without rebound (Poisson's law with one e for all
+/// impulses). The normal velocities are the same as with Moreau's law, but slip that friction stops returns with e
+/// times its speed. Separate rebounds from one surface after another are not used, because they multiply energy in
+/// narrow wedges.
 ///
-/// Poisson's law loses energy. Proof with the impulses P and velocities u of the impact without rebound, and their
+/// Poisson's law adds no energy. Proof with the impulses P and velocities u of the impact without rebound, and their
 /// matrix G: P u <= 0 and P u- = P u - P G P, so P (u+ + u-) = P ((1 + e) u + (1 - e) u-) <= 0. Source: J. J. Moreau,
 /// "Unilateral contact and dry friction in finite freedom dynamics", CISM 302, Springer 1988.
 [[nodiscard]] ImpactResult solve_impact(const Motion& before, double radius, std::span<const ImpactSurface> surfaces);

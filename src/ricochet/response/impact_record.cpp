@@ -10,8 +10,8 @@
 
 namespace ricochet {
 
-/// Returns the record of an impact as it begins. A surface from which an earlier part of the impact has led the
-/// particle away supports it no longer.
+/// Returns the record of an impact with the state before it. A surface no longer counts as a support if an earlier part
+/// of the impact has separated the particle from it.
 RecordedImpact ImpactResolver::impact_before(std::span<const ContactSurface> surfaces) const {
     RecordedImpact impact;
     if (!scratch_.record_motions) return impact;

@@ -41,7 +41,7 @@ bool ImpactResolver::reflect(std::span<const ContactSurface> surfaces, bool is_f
     return true;
 }
 
-/// Removes the rounding by which supporting surfaces are approached. This impulse belongs to no impact.
+/// Removes approach speeds towards supporting surfaces, which are rounding errors. This impulse belongs to no impact.
 void ImpactResolver::settle_on_supports(std::span<const ContactSurface> surfaces) {
     std::array<Vec3, Contact::kMostSurfaces> normals;
     std::array<double, Contact::kMostSurfaces> missing{};
@@ -93,8 +93,8 @@ void ImpactResolver::shatter_by(const Vec3& velocity_change) {
     outcome_.end = MoveEnd::shattered;
 }
 
-/// Resolves one bounce alone, if it meets no other surface, and else an impact on all surfaces together. Random
-/// reflections and dynamic bodies are resolved one after another.
+/// Resolves an impact as a bounce off one surface if that does not lead into another surface. Otherwise resolves one
+/// impact on all surfaces together. Random reflections and impacts on dynamic bodies are resolved one after another.
 void ImpactResolver::resolve(std::span<const ContactSurface> surfaces, Rebound rebound) {
     const auto is_met = [&](const ContactSurface& surface) { return surfaces_.is_approached(surface); };
     const auto first = std::find_if(surfaces.begin(), surfaces.end(), is_met);
@@ -109,7 +109,8 @@ void ImpactResolver::resolve(std::span<const ContactSurface> surfaces, Rebound r
     }
 }
 
-/// Resolves a bounce off one surface. Returns false, and changes nothing, if the particle then approaches another one.
+/// Resolves a bounce off one surface. Returns false, and changes nothing, if the particle then approaches another
+/// surface.
 bool ImpactResolver::try_single(std::span<const ContactSurface> surfaces, const ContactSurface& surface,
                                 Rebound rebound) {
     const Motion before{particle_.state.velocity, particle_.spin};
@@ -131,8 +132,8 @@ bool ImpactResolver::try_single(std::span<const ContactSurface> surfaces, const 
     return true;
 }
 
-/// Returns true if surfaces that close on each other leave the particle no velocity at which it approaches none of
-/// them. Impulses would then grow without bound.
+/// Returns true if, at every velocity, the particle approaches at least one of several closing surfaces. Impulses would
+/// then grow without bound.
 bool ImpactResolver::leave_no_way_out(std::span<const ContactSurface> surfaces, const Vec3& velocity,
                                       double speed) const {
     const auto advances = [&](const ContactSurface& surface) { return surfaces_.surface_normal_speed(surface) > 0.0; };
@@ -142,7 +143,7 @@ bool ImpactResolver::leave_no_way_out(std::span<const ContactSurface> surfaces, 
     });
 }
 
-/// Resolves one impact on all surfaces, and further ones to which it leads.
+/// Resolves one impact on all surfaces, and the further impacts that result from it.
 void ImpactResolver::resolve_simultaneously(std::span<const ContactSurface> surfaces, Rebound rebound) {
     const double rounding = kProjectionRounding * length(particle_.state.velocity);
     const double scale = surfaces_.fastest(surfaces);
@@ -173,7 +174,7 @@ void ImpactResolver::apply(const ImpactResult& result, std::span<const ContactSu
                            std::span<const bool> is_met, double scale, int pass) {
     for (std::size_t k = 0; k < met.size(); ++k) {
         if (result.velocity_change[k] == Vec3{}) continue;
-        // Without an approach, an impulse as small as rounding is no hit.
+        // If the surface was not approached, an impulse within rounding does not count as a hit.
         const bool is_hit = is_met[k] || length(result.velocity_change[k]) > kCoulombResidual * scale;
         const Vec3 before = particle_.state.velocity;
         particle_.state.velocity += result.velocity_change[k];
@@ -214,7 +215,7 @@ std::span<const ContactSurface> ImpactResolver::foremost(std::span<const Contact
     return chosen;
 }
 
-/// Removes the rounding by which surfaces are still approached.
+/// Removes the remaining approach speeds, which are rounding errors.
 void ImpactResolver::stop_approach(std::span<const ContactSurface> surfaces) {
     for (int pass = 0; pass < kCornerPasses && surfaces_.approach(surfaces) > 0.0; ++pass) {
         for (const ContactSurface& surface : surfaces) {
@@ -256,7 +257,7 @@ void ImpactResolver::apply_bounce(const ContactSurface& surface, Rebound rebound
         bounce_off_body(surface, material, restitution);
         return;
     }
-    // Relative to the surface's material.
+    // The bounce is computed relative to the surface's material.
     const Vec3 carried = surfaces_.velocity_of(surface);
     const bool is_driven = carried != Vec3{};
     Motion motion{particle_.state.velocity, particle_.spin};

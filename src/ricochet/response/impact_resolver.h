@@ -13,17 +13,17 @@
 
 namespace ricochet {
 
-/// Returns false for a path whose numbers are too large: the predicates would leave the range of doubles.
+/// Returns false if the path's numbers are so large that the exact predicates would leave the range of doubles.
 [[nodiscard]] bool can_be_followed(const Path& path);
 
-/// Resolves impacts. It changes the particle's velocity and spin, and records the impulses. Impacts are resolved in the
-/// world; lasting contact uses the same records in any reference frame.
+/// Resolves impacts. It changes the particle's velocity and spin, and records the impulses. Impacts are resolved in
+/// world coordinates. Lasting contact writes to the same records in any reference frame.
 ///
-/// reflect() calls resolve(). On one surface, try_single() applies the bounce, and takes it back if the particle then
+/// reflect() calls resolve(). On one surface, try_single() applies the bounce, and reverts it if the particle then
 /// approaches another surface. All surfaces are then resolved together.
 class ImpactResolver {
 public:
-    /// All must outlive it.
+    /// All arguments must outlive the object.
     ImpactResolver(const ResponseRules& rules, MovingParticle& particle, MoveScratch& scratch, MoveOutcome& outcome,
                    const ReferenceFrame& reference = ReferenceFrame::world())
         : rules_(rules),
@@ -36,17 +36,17 @@ public:
     ImpactResolver& operator=(const ImpactResolver&) = delete;
 
     /// Resolves an impact on all surfaces of a contact together. Returns false, and changes nothing, if none is
-    /// approached. For the particle, dynamic bodies change their velocities at once; their positions follow their paths
-    /// until the move ends. is_fast: true for an impact that ends the substep of a dynamic body, false for one that
-    /// begins contact.
+    /// approached. Dynamic bodies change their velocities for this particle at once, but their positions follow their
+    /// old paths until the move ends. is_fast: true for an impact that ends the substep of a dynamic body, false for
+    /// one that begins contact.
     bool reflect(std::span<const ContactSurface> surfaces, bool is_fast = true);
-    /// The same without a rebound.
+    /// Does the same without a rebound.
     void land(std::span<const ContactSurface> surfaces);
-    /// Clears the mark of supporting surfaces that no longer support the particle at an impact: the particle leaves
-    /// them, or their body comes back after an impulse in this move.
+    /// Clears `is_support` of surfaces that no longer support the particle at an impact. The particle may separate from
+    /// them, or their body may return after an impulse in this move.
     void release(Contact& contact) const;
-    /// Removes a slow approach to bodies along their paths. Else the particle would meet a surface that leaves it, but
-    /// is still there, again and again.
+    /// Removes a slow approach of the particle to bodies that move on their old paths. A body that recedes after an
+    /// impulse still follows its old path in this move. Without the removal, the particle would hit it again and again.
     void go_with_paths(std::span<const ContactSurface> surfaces);
     /// Shatters the particle if a change of velocity, in m/s, reaches its shatter impulse.
     void shatter_by(const Vec3& velocity_change);

@@ -9,11 +9,11 @@
 
 namespace ricochet {
 
-/// Records impulses as changes of the particle's velocity: for the totals of surfaces, the loads on colliders and the
+/// Records velocity changes of the particle as impulses in the totals of surfaces, the loads on colliders and the
 /// contact log. See MoveScratch.
 class ImpulseLedger {
 public:
-    /// All must outlive it.
+    /// All arguments must outlive the object.
     ImpulseLedger(const ResponseRules& rules, const MovingParticle& particle, MoveScratch& scratch,
                   const ReferenceFrame& reference, const SurfaceKinematics& surfaces)
         : particle_(particle),
@@ -23,36 +23,37 @@ public:
           recorder_(rules, particle, scratch, reference),
           moment_center_(particle.state.position) {}
 
-    /// Records a change of velocity by a surface, in m/s, and the change of spin with it, in rad/s. Without the latter,
-    /// the spin has changed by all that has happened since the last record. impact: false for lasting contact.
+    /// Records a change of velocity by a surface, in m/s, and the change of spin that it causes, in rad/s. Without
+    /// spin_change, the whole change of spin since the last record is used. impact: false for lasting contact.
     void record_impulse(SurfaceId surface, const Vec3& velocity_change, bool impact,
                         const std::optional<Vec3>& spin_change = std::nullopt);
-    /// Marks the last impulse as a further pass of an impact that is counted already.
+    /// Marks the last impulse as a further pass of an impact that has already been counted.
     void mark_as_repeated() { scratch_.hits.back().again = are_hits_; }
-    /// Records an impact in the contact log. The particle has its velocity after the impact.
+    /// Records an impact in the contact log. The particle must already have its velocity after the impact.
     void log_contact(const ContactSurface& surface, const Vec3& velocity_before);
-    /// The impulses between these two calls belong to one impact. approach: its largest speed, m/s, or 0 for one that
-    /// begins contact.
+    /// The impulses between these two calls belong to one impact. approach: its largest approach speed, in m/s, or 0
+    /// for an impact that begins contact.
     void begin_impact(double approach) { recorder_.begin_impact(approach); }
     void end_impact() { recorder_.end_impact(); }
-    /// Records a moment on a surface besides the moments of all impulses, as the change of the particle's angular
-    /// momentum over its mass, m^2/s.
+    /// Records a moment on a surface in addition to the moments of all impulses. change: change of the particle's
+    /// angular momentum per unit mass, in m^2/s.
     void record_moment(SurfaceId surface, const Vec3& change) {
         recorder_.add_couple(surface, -particle_.state.mass * change);
     }
     /// Ends the records of the move.
     void close() { recorder_.close(); }
-    /// Notes that moving surfaces take part in the next record.
+    /// Records that moving surfaces take part in the next record.
     void note_driven() { scratch_.driven = true; }
-    /// Says whether the next impacts are hits. The contact log and the counts of hits omit impacts that only resume a
-    /// contact. Their impulses count.
+    /// Sets whether the next impacts count as hits. Impacts that only resume a contact are omitted from the contact log
+    /// and the counts of hits. Their impulses are still recorded.
     void set_hits(bool are_hits) { are_hits_ = are_hits; }
 
-    /// Sum of all recorded changes of velocity in the world, m/s.
+    /// Returns the sum of all recorded changes of velocity in the world, m/s.
     [[nodiscard]] const Vec3& velocity_change() const { return velocity_change_; }
-    /// Sum of their moments about moment_center(), m^2/s, each at the particle's centre.
+    /// Returns the sum of the moments of these changes about moment_center(), in m^2/s. Each one acts at the particle's
+    /// centre.
     [[nodiscard]] const Vec3& angular_impulse() const { return angular_impulse_; }
-    /// Position in the world at which the move began, m.
+    /// Returns the position in the world, in m, at which the move began.
     [[nodiscard]] const Vec3& moment_center() const { return moment_center_; }
 
 private:

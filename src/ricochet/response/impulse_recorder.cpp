@@ -74,9 +74,9 @@ Vec3 ImpulseRecorder::couple_of(const Vec3& spin_change) const {
     return (-0.4 * particle_.state.mass * radius * radius) * spin_change;
 }
 
-/// Returns the work, in J, of a load by the surface's own motion (a conveyor belt), at one moment. The impulse works on
-/// the velocity at the contact. The couple without the impulse's lever is a resistance to rolling or spinning. That
-/// works on the angular velocity of the material.
+/// Returns the work, in J, of a load by the surface's own motion (a conveyor belt), at one moment. The impulse does
+/// work on the velocity of the material at the contact. The couple minus the moment of the impulse is a resistance to
+/// rolling or spinning. This resistance does work on the angular velocity of the material.
 double ImpulseRecorder::work_on_material(const ColliderLoad& load, BodyId body, const Moment& at) const {
     const Material& material = rules_.materials[rules_.world.material_of(load.surface)];
     if (!material.drives()) return 0.0;
@@ -91,8 +91,8 @@ double ImpulseRecorder::work_on_material(const ColliderLoad& load, BodyId body, 
     return dot(load.impulse, in_world(along)) + dot(resistance, in_world(material.motion.angular_velocity));
 }
 
-/// Returns a time, in s, at which a body moves as it did while it pushed. Lasting contact is recorded at the end of its
-/// interval. That may be a key, after which the body moves differently.
+/// Returns a time, in s, at which a body still has the motion that it had during a contact. Lasting contact is recorded
+/// at the end of its interval. This may be a key time, after which the body moves differently.
 double ImpulseRecorder::time_of_push(BodyId body, double time, bool impact) const {
     if (impact || body == kWorldBody || rules_.bodies.is_dynamic(body)) return time;
     const double rounding = kKeyUlps * ulp(time);
@@ -131,13 +131,13 @@ void ImpulseRecorder::enter(const SurfaceHit& hit, const Vec3& couple) {
     scratch_.loads.push_back(load);
 }
 
-/// Corrects a load of lasting contact, which has acted over its whole interval while both moved. Uses the means of both
-/// ends of the interval: second order.
+/// Corrects a load of lasting contact, which has acted over its whole interval while particle and surface moved. Uses
+/// the means of the values at both ends of the interval, which is of second order.
 void ImpulseRecorder::enter_lasting(ColliderLoad& load, BodyId body) const {
     if (body == kWorldBody) {
         load.moment = cross(0.5 * (since_.particle_center + load.particle_center), load.impulse) + load.couple;
     } else if (rules_.bodies.is_dynamic(body) || rules_.bodies.is_deforming(body)) {
-        return;  // its path is planned differently, and the position on the surface is not known
+        return;  // the body's path is planned differently, and the position on the surface is not known
     }
     load.work = 0.5 * (load.work + work_at(load, body, since_));
     if (body == kWorldBody) return;
@@ -145,8 +145,9 @@ void ImpulseRecorder::enter_lasting(ColliderLoad& load, BodyId body) const {
     load.moment += cross(0.5 * (origin(until_.time) - origin(since_.time)), load.impulse);
 }
 
-/// Returns the work, in J, of a load at the start of its interval. The moment is that of the interval's end: for moving
-/// surfaces, a couple is recorded for the difference to the angular momentum that the particle has lost.
+/// Returns the work, in J, of a load with the body's motion at the start of its interval. The moment is that at the end
+/// of the interval. For moving surfaces, a couple is recorded for its difference from the particle's loss of angular
+/// momentum.
 double ImpulseRecorder::work_at(const ColliderLoad& load, BodyId body, const Moment& at) const {
     const MovingPose pose = rules_.bodies.pose(body, at.time);
     const Vec3 moment = cross(load.particle_center - pose.world_from_frame.translation, load.impulse) + load.couple;

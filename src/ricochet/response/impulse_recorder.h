@@ -2,8 +2,8 @@
 /// Private to the responses: records the impulses and moments that one particle gives in one move to moving colliders,
 /// or to colliders with moving material.
 ///
-/// The moment about any point is the loss of the particle's angular momentum, spin included. So the sums balance under
-/// any law of impact. A change of spin is recorded with the next impulse.
+/// The recorded moment about any point equals the loss of the particle's angular momentum, including its spin. The sums
+/// therefore balance under any law of impact. A change of spin is recorded with the next impulse.
 #pragma once
 
 #include <cstddef>
@@ -27,13 +27,14 @@ public:
         if (scratch.record_loads) since_ = until_ = moment_of_time();
     }
 
-    /// Records an impulse on a surface, and the change of spin with it, in rad/s. Without the latter, it is the whole
-    /// change since the last record.
+    /// Records an impulse on a surface, and the change of spin that it causes, in rad/s. Without spin_change, the whole
+    /// change of spin since the last record is used.
     void add(const SurfaceHit& hit, const std::optional<Vec3>& spin_change);
-    /// Impulses recorded between these two calls belong to one impact. approach: its largest speed, in m/s.
+    /// Impulses recorded between these two calls belong to one impact. approach: its largest approach speed, in m/s.
     void begin_impact(double approach);
     void end_impact();
-    /// Records a couple on a surface, in N m s: the part of its moment in lasting contact that its impulses lack.
+    /// Records a couple on a surface, in N m s: the part of its moment in lasting contact that its impulses do not
+    /// contain.
     void add_couple(SurfaceId surface, const Vec3& couple);
     /// Records the change of spin since the last record, on the last surface.
     void close();
@@ -60,12 +61,12 @@ private:
     MoveScratch& scratch_;
     const ReferenceFrame& reference_;
     Moment since_;       // start of the contact interval of the records
-    Moment until_;       // its end
+    Moment until_;       // end of this interval
     Vec3 spin_;          // rad/s, in the world, after the last record
     std::size_t first_;  // first record of this move
     std::size_t first_of_impact_ = 0;
-    double energy_before_ = 0.0;  // J, before the impact
-    double approach_ = 0.0;       // m/s, of the impact
+    double energy_before_ = 0.0;  // J, kinetic energy before the impact
+    double approach_ = 0.0;       // m/s, approach speed of the impact
 };
 
 }  // namespace ricochet

@@ -8,9 +8,9 @@
 namespace ricochet {
 namespace {
 
-/// Up to this number of boxes, each search tests all boxes.
+/// Largest number of boxes for which each search tests all boxes.
 constexpr std::size_t kFew = 48;
-/// The grid is rebuilt after a change of more than one in this number of boxes, because each search also tests all
+/// The grid is rebuilt when more than one in this number of boxes has changed, because each search also tests all
 /// changed boxes.
 constexpr std::size_t kChangedShare = 8;
 

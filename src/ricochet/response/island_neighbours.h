@@ -13,7 +13,7 @@
 
 namespace ricochet {
 
-/// The earliest of many times that change one by one, as a tree of minima.
+/// Many times that change one by one, with fast access to the earliest. They are stored as a tree of minima.
 class EarliestTime {
 public:
     /// Sets all times to infinity.
@@ -31,10 +31,11 @@ private:
     std::vector<double> minima_{0.0, std::numeric_limits<double>::infinity()};
 };
 
-/// Pairs of overlapping boxes, while boxes change one by one. Neighbours are listed in ascending order.
+/// Pairs of overlapping boxes, updated as boxes change one by one. Neighbours are listed in ascending order.
 class IslandNeighbours {
 public:
-    /// boxes: empty ones have no neighbours. They must outlive it. Each call reads their present values.
+    /// Finds the neighbours of all boxes. Empty boxes have no neighbours. The boxes must outlive the object, and each
+    /// call reads their present values.
     void begin(const std::vector<Box3>& boxes);
     /// Updates the neighbours of changed boxes. changed: their indices, in ascending order.
     void update(std::span<const std::size_t> changed);
@@ -47,8 +48,8 @@ private:
     const std::vector<Box3>* boxes_ = nullptr;
     std::vector<std::vector<std::uint32_t>> near_;
     NeighbourGrid grid_;                     // of the boxes at the time when it was built
-    std::vector<std::uint8_t> has_changed_;  // 1 for each box that has changed since then
-    std::vector<std::uint32_t> changed_;     // indices of those boxes
+    std::vector<std::uint8_t> has_changed_;  // 1 for each box that has changed since the grid was built
+    std::vector<std::uint32_t> changed_;     // indices of these boxes
 };
 
 }  // namespace ricochet

@@ -13,8 +13,8 @@
 
 namespace ricochet {
 
-/// Returns two unit vectors that span the directions along all surfaces with these normals, at least one. If two
-/// normals are not parallel, only one direction remains, and the second vector is zero.
+/// Returns two unit vectors that span the directions along all surfaces with these normals. There must be at least one
+/// normal. If two normals are not parallel, only one direction remains, and the second vector is zero.
 [[nodiscard]] inline std::array<Vec3, 2> directions_along(std::span<const Vec3> normals) {
     for (const Vec3& normal : normals) {
         const Vec3 line = cross(normals.front(), normal);
@@ -23,8 +23,8 @@ namespace ricochet {
     return tangent_frame(normals.front());
 }
 
-/// Returns the largest length of a linear map's value for unit vectors along the surfaces with these normals: the
-/// largest singular value of the map. 0 without normals.
+/// Returns the largest singular value of a linear map on the directions along the surfaces with these normals. This is
+/// the largest length of the map's value for a unit vector. Returns 0 without normals.
 template <class Map>
 [[nodiscard]] double largest_curvature(std::span<const Vec3> normals, const Map& map) {
     if (normals.empty()) return 0.0;

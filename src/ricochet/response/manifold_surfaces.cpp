@@ -62,7 +62,8 @@ bool ManifoldSurfaces::has_left_face(const Vec3& position) const {
     return false;
 }
 
-/// Returns true if a face no longer holds a particle at a position: its foot on the plane is too far beyond the face.
+/// Returns true if a face no longer supports a particle at a position. This is so if the position's projection onto the
+/// plane lies too far beyond the rim.
 bool ManifoldSurfaces::is_beyond_rim(SurfaceId surface, const Vec3& position) const {
     const double slack = kEdgeOffsets * geometry().contact_offset(position);
     const Vec3 normal = geometry().unit_normal_of(surface, position);
@@ -78,7 +79,8 @@ void lift_middle(const SurfaceGeometry& geometry, const ContactManifold& manifol
     for (std::size_t k = 0; k < manifold.size(); ++k) {
         const ContactSurface surface = manifold[k];
         if (surface.flat) continue;
-        // Round an edge or a rim, a path of a sphere does not lie above the surface's own continuation.
+        // The path of a sphere around an edge or a rim does not lie above the extension of the surface, so it is not
+        // lifted.
         const bool is_round =
             geometry.world().is_shape(surface.surface) && !geometry.nearest(surface.surface, path.c[0]).rim;
         if (radius > 0.0 && !is_round) continue;
@@ -106,8 +108,8 @@ void ManifoldSurfaces::meet(std::optional<Contact>& contact) {
     if (contact) join_impact(*contact);
 }
 
-/// Returns true for a surface of the manifold, and for a continuation of one: the next triangle of a plane, a seam, or
-/// a plane of another collider in the same position.
+/// Returns true for a surface of the manifold, and for a continuation of such a surface: the next triangle of a plane,
+/// a seam, or a plane of another collider in the same position.
 bool ManifoldSurfaces::goes_on(const ContactSurface& surface) const {
     return geometry().world().owns(surface.surface) && manifold_.point_of(surface.normal).has_value();
 }
@@ -133,7 +135,7 @@ void ManifoldSurfaces::join_impact(Contact& contact) const {
         if (is_there ||
             nearest.distance > state().radius + kTouchingOffsets * geometry().contact_offset(state().position))
             continue;
-        // For a point next to a rim, the direction from the rim is mere rounding.
+        // For a point next to a rim, the direction from the rim consists of rounding errors.
         const bool is_beside_rim = state().radius == 0.0 && nearest.rim;
         contact.surfaces[static_cast<std::size_t>(contact.count++)] =
             is_beside_rim ? ContactSurface{surface, manifold_[k].normal, manifold_[k].flat, true}

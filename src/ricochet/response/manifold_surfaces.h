@@ -1,5 +1,6 @@
 /// \file
-/// Private to the exact response: the surfaces that hold a particle on a path along them, and the seams between them.
+/// Private to the exact response: the surfaces that support a particle on a path along them, and the seams between
+/// them.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +14,11 @@
 
 namespace ricochet {
 
-/// The surfaces of the contact manifold. At a seam, or if one of them is curved, also all others that touch the
-/// particle at the same contact points: the triangles around an edge or a vertex.
+/// The surfaces of the contact manifold. At a seam, or if one of the surfaces is curved, this includes all others that
+/// touch the particle at the same contact points. These are the triangles around an edge or a vertex.
 class ManifoldSurfaces {
 public:
-    /// Both must outlive it.
+    /// Both arguments must outlive the object.
     ManifoldSurfaces(const ParticleStep& step, ContactManifold& manifold) : step_(step), manifold_(manifold) {}
 
     /// Finds the surfaces at the particle's position, for a path that begins there.
@@ -25,8 +26,8 @@ public:
     /// Returns the surfaces along which a path leads.
     [[nodiscard]] std::span<const SurfaceId> all() const { return surfaces_; }
 
-    /// Returns true if the particle, at a position on the path, touches another part of a surface than at the start.
-    /// Also true for another surface in its place.
+    /// Returns true if the particle would touch a different part of a surface, or a different surface, than at the
+    /// start of the path. position: a position on the path.
     [[nodiscard]] bool touches_next_piece(const Vec3& position) const;
     /// Returns true if the particle overlaps one of the touched surfaces that are not in the manifold.
     [[nodiscard]] bool overlaps(const Vec3& position) const;
@@ -34,14 +35,14 @@ public:
     [[nodiscard]] bool has_left_face(const Vec3& position) const;
 
     /// Handles a contact at the end of a path. A contact with a continuation of the surfaces, such as the next triangle
-    /// of a plane, is removed. The continuation then holds the particle, too. In an impact on any other surface, the
-    /// manifold's surfaces take part.
+    /// of a plane, is removed. The continuation then also supports the particle. The manifold's surfaces are added to
+    /// an impact on any other surface.
     void meet(std::optional<Contact>& contact);
     /// Adds the manifold's touched surfaces to an impact on another surface. These and their continuations are marked
     /// as supports.
     void join_impact(Contact& contact) const;
-    /// Updates the manifold to the surfaces that still touch the particle. Adds those at a turning point of the path,
-    /// where another part of a surface begins.
+    /// Updates the manifold to the surfaces that still touch the particle. Adds faces that touch it at `turning_point`,
+    /// the point of the path where another part of a surface begins.
     void touch_again(const Vec3& turning_point);
 
 private:
@@ -63,13 +64,13 @@ private:
     ContactManifold& manifold_;
     std::vector<SurfaceId> surfaces_;
     std::vector<Beside> beside_;
-    bool crosses_seam_ = false;  // the next path begins at a seam
-    int seams_ = 0;              // parts of surfaces that the step has reached over a seam
+    bool crosses_seam_ = false;  // true if the next path begins at a seam
+    int seams_ = 0;              // number of seams that the particle has crossed in the step
 };
 
-/// Lifts the middle of a path that lies behind curved surfaces, where the particle would be stopped. By the cubic's
-/// error, this happens to the path of a point, or of a sphere that is small next to the surface. Over the path's
-/// duration, the lift is 4 s (1 - s) of a height, and the error 16 s^2 (1 - s)^2.
+/// Lifts the middle of a path that lies behind curved surfaces, because the particle would be stopped there. The error
+/// of the cubic causes this for a point, or for a sphere that is small compared with the surface. With s from 0 to 1
+/// along the path, the lift is 4 s (1 - s) times a height. The error is 16 s^2 (1 - s)^2 times a height.
 void lift_middle(const SurfaceGeometry& geometry, const ContactManifold& manifold, double radius, Path& path);
 
 }  // namespace ricochet

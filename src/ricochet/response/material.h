@@ -23,24 +23,24 @@ struct SurfaceMotion {
         const Vec3 whole = velocity + cross(angular_velocity, p - center);
         return whole - dot(whole, n) * n;
     }
-    /// Returns the rate of that velocity along the surface, in m/s^2, at a contact that moves with velocity v. n_rate:
-    /// rate of the normal, in 1/s.
+    /// Returns the component along the surface of the time derivative of at(), in m/s^2, at a contact that moves with
+    /// velocity v. n_rate: time derivative of the normal, in 1/s.
     [[nodiscard]] Vec3 rate(const Vec3& p, const Vec3& n, const Vec3& v, const Vec3& n_rate) const {
         const Vec3 whole = velocity + cross(angular_velocity, p - center);
         return cross(angular_velocity, v) - dot(whole, n) * n_rate;
     }
 };
 
-/// Surface material. Particles take the collider's.
+/// Material of a surface. Contacts of particles with the surface use it.
 struct Material {
     std::string name;
     double restitution = 1.0;            ///< rebound speed over approach speed along the normal, 0..1
     double friction = 0.0;               ///< Coulomb coefficient, >= 0, for impacts and for sliding
     double restitution_threshold = 0.0;  ///< m/s, >= 0; below this approach speed restitution falls linearly to 0
-    double rolling_friction = 0.0;       ///< resisting moment over radius times normal force, >= 0; spheres that roll
+    double rolling_friction = 0.0;       ///< resisting moment over radius times normal force, >= 0; for rolling spheres
     double diffuse = 0.0;                ///< accommodation: fraction of impacts reflected by the cosine law, 0..1
-    /// Temperature of the wall, in K, > 0. Diffuse reflections leave with its thermal speeds, or without it at their
-    /// approach speed.
+    /// Temperature of the wall, in K, > 0. Diffusely reflected particles leave with thermal speeds of this temperature,
+    /// or with their approach speed if it is not set.
     std::optional<double> wall_temperature = std::nullopt;
     double absorption = 0.0;  ///< fraction of impacts that remove the particle, 0..1
     /// Moment that resists spinning about the normal over the normal force, in m, >= 0. For spheres in lasting contact.

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the exact response: records the parts of a step, one after another.
+/// Private to the exact response: records the parts of a particle's step in their order.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@
 
 namespace ricochet {
 
-/// Records the motion of a particle since the last call, if MoveScratch::record_motions is set. All arguments must
-/// outlive it.
+/// Records the motion of a particle, if MoveScratch::record_motions is set. Each call records the motion since the
+/// previous call. All arguments must outlive the object.
 class MotionLog {
 public:
     MotionLog(const ResponseRules& rules, const MovingParticle& particle, MoveScratch& scratch,
@@ -32,16 +32,17 @@ public:
         if (particle_.state.time > time_) scratch_.supported_by.clear();
         add(MotionPart::Kind::flight, {}, true);
     }
-    /// Records a change of motion without duration: surfaces have been hit or have released the particle. Records
-    /// nothing if the motion has not changed.
+    /// Records an instantaneous change of motion, by impacts on surfaces or by release from them. Records nothing if
+    /// the motion has not changed.
     void note_impact() {
         if (!scratch_.record_motions) return;
         const bool is_driven = std::exchange(scratch_.driven, false) || reference_.is_moving();
         if (motion() == last_) return;
         add(is_driven ? MotionPart::Kind::driven : MotionPart::Kind::impact, {}, true);
     }
-    /// Records contact along the beginning of a path. force: over the mass at the start, in m/s^2. acts: false if the
-    /// velocity contains the forces since the start of the step. supported_by: the surfaces that held the particle.
+    /// Records contact along the first part of a path. force: force per unit mass at the start, in m/s^2. acts: false
+    /// if the velocity already contains the effect of the forces, from the start of the step. supported_by: surfaces
+    /// that supported the particle.
     void note_contact(const Vec3& force, const Path& path, bool acts, std::span<const SurfaceId> supported_by) {
         if (!acts) return note_stay(supported_by);
         if (!scratch_.record_motions) return;

@@ -1,5 +1,5 @@
 // The stages of a particle's step in contact with moving colliders: in the frame of one body, on surfaces of several
-// frames, and until a body leaves the particle.
+// frames, and on a body that recedes from the particle.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -13,9 +13,9 @@
 namespace ricochet {
 namespace {
 
-/// Corrects the recorded impulses of contact in moving frames. They are exact to the order of the method, and are
-/// recorded where each interval ends. Under uniform forces the momentum and the angular momentum that surfaces have
-/// given are known, so the difference is recorded, too.
+/// Corrects the recorded impulses of contact in moving frames. These impulses are accurate to the order of the method
+/// and are recorded at the position where each interval ends. Under uniform forces, the momentum and angular momentum
+/// that surfaces have given are known exactly. The difference is then recorded, too.
 class MomentumAccount {
 public:
     /// Begins an account of the step's particle at its present state, in world coordinates.
@@ -26,9 +26,9 @@ public:
           angular_impulse_(step.impact().ledger().angular_impulse()),
           remaining_(step.remaining()) {}
 
-    /// Records the missing impulse and moment so far as given by one surface. The state must be in world coordinates.
-    /// Records nothing if forces vary or other particles act on this one. The moment of the forces is taken at the mean
-    /// of both ends.
+    /// Records the impulse and moment that are missing so far, as if one surface had given them. The state must be in
+    /// world coordinates. Records nothing if forces vary or other particles act on this particle. The moment of the
+    /// forces is computed at the mean of the start and end positions.
     void settle(ParticleStep& step, SurfaceId surface) const {
         const ForceField& forces = step.rules().forces;
         const bool is_coupled = step.particle().planned != nullptr || step.state().coupling != nullptr;
@@ -72,7 +72,7 @@ Contact part_with(const MovingColliders& bodies, BodyId body, const Contact& con
     return part;
 }
 
-/// Returns the first surface of a dynamic body.
+/// Returns the first surface of a contact that belongs to a dynamic body, or null.
 const ContactSurface* first_dynamic(const MovingColliders& bodies, const Contact& contact) {
     const auto surfaces = contact.all();
     const auto found = std::find_if(surfaces.begin(), surfaces.end(), [&](const ContactSurface& surface) {
@@ -83,9 +83,9 @@ const ContactSurface* first_dynamic(const MovingColliders& bodies, const Contact
 
 }  // namespace
 
-/// Follows a receding dynamic body. A particle that separates from it at near-zero speed would touch it repeatedly with
-/// zero impulse, so it moves with the body until they are apart. contact: replaced by the next contact. Returns false
-/// if the contact is no such touch.
+/// Follows a receding dynamic body. A particle that separates from the body at near-zero speed would touch it
+/// repeatedly with zero impulse. The particle therefore moves with the body until they are apart. contact: replaced by
+/// the next contact. Returns false if the contact is not of this kind.
 bool ParticleMover::follows_receding_body(std::optional<Contact>& contact) {
     if (!step_.has_budget() || !(step_.remaining() > 0.0)) return false;
     if (first_dynamic(rules_.bodies, *contact) == nullptr) return false;
@@ -96,8 +96,8 @@ bool ParticleMover::follows_receding_body(std::optional<Contact>& contact) {
     return step_.remaining() < before;
 }
 
-/// Returns true if a supporting body gets another velocity and the particle keeps its own. A particle at rest follows a
-/// small jump of the velocity.
+/// Returns true if the velocity of a supporting body jumps and the particle keeps its own velocity. A particle at rest
+/// follows a small jump instead.
 bool ParticleMover::is_released_by_jump() const {
     const std::span<const SurfaceId> supporting(particle_.contact.surfaces.data(), particle_.contact.count);
     const auto has_jumped = [&](SurfaceId surface) { return rules_.bodies.has_jumped(rules_.bodies.body_of(surface)); };
@@ -106,7 +106,8 @@ bool ParticleMover::is_released_by_jump() const {
     return releases(rules_, frame_rules_, particle_, rules_.bodies.body_of(supporting[0]));
 }
 
-/// Resumes contact, with the surfaces of one frame or of several, until it remains the same or ends.
+/// Resumes contact with the surfaces of one frame or of several frames. Repeats this while contact and time remain,
+/// because the frames of the surfaces can change.
 std::optional<Contact> ParticleMover::resume_among_bodies() {
     constexpr int kMostTurns = 4;
     const MovingColliders& bodies = rules_.bodies;
@@ -135,7 +136,7 @@ std::optional<Contact> ParticleMover::resume_among_bodies() {
     return next;
 }
 
-/// Follows contact in the frame of a body, and returns to the world.
+/// Follows contact in the frame of a body, and then returns to the world frame.
 template <class Follow>
 std::optional<Contact> ParticleMover::follow_in_frame(BodyId body, Contact* contact, const Follow& follow) {
     const MomentumAccount account(step_);
@@ -166,7 +167,7 @@ std::optional<Contact> ParticleMover::follow_in_frame_unsettled(BodyId body, Con
     const SurfaceId support = particle_.contact.surfaces[0];
     const bool was_supported = particle_.contact.count > 0;
     if (is_released) {
-        // The body gets another velocity, and the particle keeps its own.
+        // The body's velocity jumps, and the particle keeps its own velocity.
         particle_.contact = {};
         step_.outcome().end = MoveEnd::moving;
     } else if (step_.outcome().is_resting() && was_supported) {
@@ -193,7 +194,7 @@ std::optional<Contact> ParticleMover::begin_contact(const Flight& flight, const 
     }
     for (std::size_t k = count; k-- > 0;) {  // the world first
         if (k + 1 < count && bodies[k] == bodies[k + 1]) continue;
-        if (rules_.bodies.is_deforming(bodies[k])) continue;  // it has no frame
+        if (rules_.bodies.is_deforming(bodies[k])) continue;  // a deforming mesh has no frame
         const Contact part = part_with(rules_.bodies, bodies[k], contact);
         const double before = step_.remaining();
         const auto next = bodies[k] == kWorldBody ? contact_phase_.begin(flight, part, arriving)
@@ -203,8 +204,8 @@ std::optional<Contact> ParticleMover::begin_contact(const Flight& flight, const 
     return std::nullopt;
 }
 
-/// Follows contact with surfaces of several frames. A particle that gets stuck there again and again stays for the rest
-/// of the step.
+/// Follows contact with surfaces of several frames. A particle that does so too often in one step stays at its position
+/// for the rest of the step.
 std::optional<Contact> ParticleMover::follow_shared() {
     if (++shared_count_ > kMostSharedContacts) {
         particle_.contact = {};
@@ -235,8 +236,8 @@ std::optional<Contact> ParticleMover::begin_in_frame(BodyId body, const Contact&
     });
 }
 
-/// Returns true if the particle comes back to a body whose velocity jump has released it, hardly faster than it has
-/// left. The end of a step has only divided the contact.
+/// Returns true if the particle returns to dynamic bodies after a velocity jump has released it, hardly faster than it
+/// left. Such a contact was only interrupted by the end of a step.
 bool ParticleMover::lands_again(const Contact& contact, double slow) const {
     if (!release_speed_ || surfaces().approach(contact.all()) > kLandsAgain * std::max(*release_speed_, slow)) {
         return false;
@@ -246,7 +247,7 @@ bool ParticleMover::lands_again(const Contact& contact, double slow) const {
     });
 }
 
-/// Moves the particle with a dynamic body that it has hit. The body moves away only from the next move on.
+/// Moves the particle with a dynamic body that it has hit. The body starts to recede only in the next move.
 std::optional<Contact> ParticleMover::follow_receding_body(const Contact& contact) {
     const SurfaceId surface = first_dynamic(rules_.bodies, contact)->surface;
     const BodyId body = rules_.bodies.body_of(surface);

@@ -10,8 +10,8 @@
 
 namespace ricochet {
 
-/// Calls found(surface) for each surface of a frame near a position in it: planes, shapes, triangles, each in ascending
-/// order. beside: as ContactQuery::beside.
+/// Calls found(surface) for each surface of a frame near a position in that frame. The order is planes, shapes,
+/// triangles, each with ascending numbers. beside: as ContactQuery::beside.
 template <class Found>
 void visit_near_in(const ParticleStep& step, const SurfaceGeometry& geometry, const Vec3& position, double beside,
                    const Found& found) {

@@ -14,7 +14,7 @@ constexpr double kCurvatureStep = 1e-4;
 constexpr double kSmallestScale = 1e-3;
 
 /// Returns the derivative of a shape's normal, in 1/s, as a difference of its normals along the motion. A side is
-/// continued beyond its rim.
+/// extended beyond its rim.
 Vec3 shape_normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId surface,
                        const CollisionWorld::Nearest& nearest, const Vec3& position, const Vec3& velocity) {
     const double speed = length(velocity);
@@ -24,7 +24,7 @@ Vec3 shape_normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId
     if (radius > 0.0) scale = std::clamp(radius, nearest.rim ? 0.0 : kSmallestScale * size, size);
     const double step = kCurvatureStep * scale;
     const Vec3 heading = velocity / speed;
-    // A tangent soon gets to the other side of a surface that bends towards it.
+    // A tangent of a concave surface soon crosses to the other side, where the normal is reversed.
     const auto normal_at = [&](double distance) {
         const Vec3 beside = position + distance * heading;
         const Vec3 there =
@@ -33,7 +33,7 @@ Vec3 shape_normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId
     };
     const Vec3 ahead = normal_at(step) - nearest.normal;
     const Vec3 behind = nearest.normal - normal_at(-step);
-    // Next to a rim, one of the two positions lies beyond it.
+    // Next to a rim, one of the two positions lies beyond it, so only the other one is used.
     const double difference = length(ahead - behind);
     if (difference > 0.5 * std::max(length(ahead), length(behind))) {
         return (speed / step) * (length(ahead) < length(behind) ? ahead : behind);

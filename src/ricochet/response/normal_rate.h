@@ -6,8 +6,9 @@
 
 namespace ricochet {
 
-/// Returns the part of a surface that is nearest to a position. 0 stands for the inside of a triangle, or for a surface
-/// without parts. Otherwise bit k stands for corner k of the edge or vertex.
+/// Returns a code for the feature of a surface that is nearest to a position. The code is 0 away from edges, vertices
+/// and rims. For an edge or vertex of a triangle, bit k is set for each of its corners k. For the rim of a cylinder it
+/// is CollisionWorld::rim_of().
 [[nodiscard]] int touched_feature(const SurfaceGeometry& geometry, SurfaceId surface, const Vec3& position);
 
 /// Returns the time derivative of a surface's normal, in 1/s, while a touching point or sphere moves with a velocity,

@@ -24,13 +24,14 @@ Vec3 relative_velocity(const PairBody& a, const PairBody& b, const Vec3& normal)
     return (b.velocity - a.velocity) - cross(a.radius * a.spin + b.radius * b.spin, normal);
 }
 
-/// Returns the smallest rebound speed of a contact with this approach, in m/s.
+/// Returns the least separation speed after an impact with this approach speed, in m/s. It is 0 if a rebound with
+/// losses would be slower than resting_speed.
 double rebound_of(const PairMaterial& law, double resting_speed, double approach) {
     const double rebound = law.restitution * approach;
     return law.restitution < 1.0 && rebound < resting_speed ? 0.0 : rebound;
 }
 
-/// Stops the relative rotation across the normal, as far as the rolling moment suffices.
+/// Stops the relative rotation perpendicular to the normal, as far as the rolling moment suffices.
 void resist_rolling(const PairMaterial& law, PairBody& a, PairBody& b, const Vec3& normal, double impulse) {
     if (law.rolling_friction == 0.0) return;
     const Vec3 relative = b.spin - a.spin;
@@ -81,7 +82,7 @@ public:
             iterate();
         }
         bodies_ = before;
-        // All frictions start from the same state, so the order of contacts does not matter.
+        // All friction impulses are computed from the same state, so the order of contacts does not matter.
         for (std::size_t k = 0; k < contacts_.size(); ++k) {
             PairContact& contact = contacts_[k];
             const double share = 1.0 / static_cast<double>(std::max(counts[contact.first], counts[contact.second]));
@@ -116,8 +117,8 @@ private:
         return counts;
     }
 
-    /// Returns the fraction of all frictions that adds no energy to the state after the normal impulses. Other contacts
-    /// may reverse a slip, so full friction could add energy.
+    /// Returns the fraction of all friction impulses that adds no energy to the state after the normal impulses. Other
+    /// contacts may reverse a slip, so full friction could add energy.
     [[nodiscard]] double part_of_friction() {
         const std::vector<PairBody> before = bodies_;
         const auto power = [&] {
@@ -174,7 +175,7 @@ private:
     std::vector<PairBody>& bodies_;
     std::span<PairContact> contacts_;
     std::vector<double> impulses_;  // N s, along the normals
-    std::vector<double> targets_;   // m/s, separation speeds
+    std::vector<double> targets_;   // m/s, required separation speeds
 };
 
 }  // namespace

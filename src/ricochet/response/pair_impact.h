@@ -41,14 +41,14 @@ struct PairContact {
 /// Resolves all contacts at once. Along each normal, the bodies separate at least at the speed given by restitution,
 /// and no impulse pulls (Moreau). Friction acts against the slip and is at most mu times the normal impulse.
 ///
-/// A single contact is solved in closed form: with the tangential inverse mass 7/2 (1/m1 + 1/m2) of solid spheres,
-/// friction stops the slip or slides. Contacts that share spheres are solved together: normal impulses by projected
-/// Gauss-Seidel to rounding; frictions from the slips before the impact. Each contact gets its share of the mass of a
-/// sphere, so that energy does not grow.
+/// A single contact is solved in closed form, with the tangential inverse mass 7/2 (1/m1 + 1/m2) of solid spheres.
+/// Contacts that share spheres are solved together. Their normal impulses are computed by projected Gauss-Seidel
+/// iterations to rounding. Their friction impulses are computed from the slip before the impact. For friction, the mass
+/// of a sphere is divided among its contacts, so that energy does not grow.
 ///
-/// If restitution < 1, an approach causes no rebound below resting_speed, in m/s. Momentum and angular momentum about
-/// any point are conserved to rounding, also to rounding of the gap between the spheres. Energy is conserved if
-/// restitution is 1 and friction 0.
+/// If restitution < 1, rebounds slower than resting_speed, in m/s, are suppressed. Momentum and angular momentum about
+/// any point are conserved to rounding, which includes the rounding of the gap between the spheres. Energy is conserved
+/// if restitution is 1 and friction 0.
 ///
 /// Sources: J. J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics", 1988; O. R. Walton, R. L.
 /// Braun, Acta Mechanica 63, 1986 (friction of spheres); R. Tonge et al., ACM TOG 31, 2012 (mass splitting).

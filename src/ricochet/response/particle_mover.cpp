@@ -11,15 +11,15 @@
 namespace ricochet {
 namespace {
 
-/// Bounces in one step after which a particle does not look ahead. It is in a narrow gap, where a look-ahead always
-/// finds a surface. Without the limit the narrow cavity of `ricochet bench --suite pinball` took 6 to 9 % longer
-/// (docs/decisions/2026-11-23-what-pays.md). Local, because only the cost depends on it.
+/// Number of bounces in one step after which a particle does not look ahead. Such a particle is in a narrow gap, where
+/// a look-ahead always finds a surface. Without the limit the narrow cavity of `ricochet bench --suite pinball` took 6
+/// to 9 % longer (docs/decisions/2026-11-23-what-pays.md). Local, because only the cost depends on it.
 constexpr std::uint32_t kBouncesInNarrowGap = 2;
-/// Largest duration of a step, in time steps of the run, by the rounding of the clock. Local, because only look-ahead
-/// depends on it.
+/// Largest duration of a step, in time steps of the run. It exceeds 1 because of the rounding of the clock. Local,
+/// because only look-ahead depends on it.
 constexpr double kWholeStep = 1.0 + 1e-9;
 
-/// Ends a flight after a duration, in s, on its own path.
+/// Shortens a flight to a duration, in s, along its path.
 void cut(Flight& flight, double duration, const Integrator& integrator, const ForceField& forces) {
     if (flight.path.duration <= duration) return;
     flight.end_velocity = velocity_at(integrator, forces, flight, duration);
@@ -37,7 +37,7 @@ MoveOutcome ParticleMover::run() {
     for (bool is_first = true; contact || step_.remaining() > 0.0; is_first = false) {
         rules_.poll();
         outcome.free_for = outcome.candidates_for = 0.0;
-        // Contacts are large to copy, so none is assigned without need.
+        // Contacts are large to copy, so one is assigned only if needed.
         if (!contact) contact = advance_flight(flight, std::exchange(flies_anew_, false) || is_first);
         while (contact && !outcome.is_absorbed() && may_answer()) contact = answer(flight, *contact);
         if (outcome.is_absorbed()) break;
@@ -56,7 +56,8 @@ std::optional<Contact> ParticleMover::resume_contact() {
     return resume_among_bodies();
 }
 
-/// Flies until the step's end or the contact that is returned. flight: in, the last flight; out, the new one.
+/// Moves the particle in free flight to the end of the step or to the next contact, which is returned. flight: on input
+/// the last flight, on output the new one.
 std::optional<Contact> ParticleMover::advance_flight(Flight& flight, bool is_first) {
     const double remaining = planned_duration(is_first);
     const Integrator integrator = is_without_impulse_ ? IntegratorKind::ballistic : rules_.settings.integrator;
@@ -73,8 +74,8 @@ std::optional<Contact> ParticleMover::advance_flight(Flight& flight, bool is_fir
     return contact;
 }
 
-/// Returns false if the budget of bounces is used up, or if moving surfaces close on the particle. In the latter case
-/// many bounces have taken almost no time, and more would not help.
+/// Returns false if the budget of bounces is used up, or if moving surfaces pinch the particle. A particle counts as
+/// pinched if many bounces have taken almost no time. More bounces would not help then.
 bool ParticleMover::may_answer() {
     if (!step_.has_budget()) return false;
     const std::uint32_t meetings = step_.outcome().meetings();
@@ -84,7 +85,7 @@ bool ParticleMover::may_answer() {
     return before - step_.remaining() > kPinchedProgress * step_.duration();
 }
 
-/// Answers a contact with an impact and, if the rebound is slow, with lasting contact.
+/// Resolves a contact as an impact and, if the rebound is slow, continues with lasting contact.
 std::optional<Contact> ParticleMover::answer(const Flight& flight, Contact& contact) {
     step_.impact().release(contact);
     if (!(flight.kick_duration > 0.0) || !meets_moving(contact)) return answer_impact(flight, contact);
@@ -131,7 +132,7 @@ std::optional<Contact> ParticleMover::begin_or_continue_contact(const Flight& fl
     if (!has_begun() && flight.kick_duration == 0.0) next = continue_contact(flight, contact);
     if (!has_begun() && !release_speed_) release_speed_ = impact.release_speed;
     if (!impact.meets_moving || has_begun()) return next;
-    // The body leaves the particle, but until the move's end its path keeps it in the particle's way.
+    // The body recedes from the particle, but until the end of the move its path still blocks the particle.
     if (surfaces().approach_of_paths(contact.all()) > impact.slowest_rebound) return follow_receding_body(contact);
     step_.impact().go_with_paths(contact.all());
     return next;
@@ -146,8 +147,8 @@ void ParticleMover::finish() {
     step_.log().note_impact();
 }
 
-/// Continues contact after an impact with the surfaces that have supported the particle, if it does not leave them.
-/// There is no landing. At the end of a step they are kept for the next one.
+/// Continues contact after an impact with the surfaces that have supported the particle, unless it separates from them.
+/// No landing takes place. At the end of a step, the surfaces are stored for the next step.
 std::optional<Contact> ParticleMover::continue_contact(const Flight& flight, const Contact& contact) {
     const Contact supporting = supporting_part(contact);
     if (supporting.count == 0) return std::nullopt;
@@ -170,8 +171,8 @@ double ParticleMover::planned_duration(bool is_first) const {
     return is_planned ? particle_.planned->path.duration : step_.remaining() + particle_.beyond;
 }
 
-/// Subtracts the impulse of a kick for the time left, at an impact on a moving surface. From then on the forces act on
-/// the flight itself.
+/// Subtracts the part of a kick that belongs to the remaining time, at an impact on a moving surface. From then on the
+/// forces act during the flight.
 void ParticleMover::retract_kick(const Flight& flight) {
     if (!flies_anew_) {
         particle_.state.velocity -= step_.remaining() * flight.acceleration;
@@ -180,14 +181,14 @@ void ParticleMover::retract_kick(const Flight& flight) {
     flies_anew_ = is_without_impulse_ = true;
 }
 
-/// Notes that contact on a body has ended the flight: the next one does not continue it.
+/// Records that contact on a body has ended the flight, so that the next flight does not continue it.
 void ParticleMover::leave_flight() {
     flies_anew_ = true;
     is_without_impulse_ = kicks_first(rules_.settings.integrator.kind);
 }
 
-/// Returns the horizon of the last flight of a step: as far as its path is known. That requires uniform acceleration
-/// and steps of the run's length.
+/// Returns the look-ahead of the last flight of a step, as far as its path is known. A path is known only under uniform
+/// acceleration and in steps of the run's length.
 std::optional<LookAhead> ParticleMover::look_ahead_of(const Flight& flight) const {
     const ForceInput& state = particle_.state;
     const double remaining = step_.remaining();
@@ -199,7 +200,7 @@ std::optional<LookAhead> ParticleMover::look_ahead_of(const Flight& flight) cons
     if (!is_known) return std::nullopt;
     const double acceleration = length(flight.acceleration);
     const int steps = acceleration == 0.0 ? kMaxLookAheadSteps : kMaxLookAheadStepsCurved;
-    const double left = rules_.end - (state.time + remaining);  // of the run, after this step
+    const double left = rules_.end - (state.time + remaining);  // s, time of the run after this step
     if (left < 0.5 * time_step) return std::nullopt;
     const double duration = remaining + std::min(steps * time_step, left + time_step);
     LookAhead look_ahead{look_ahead_path(rules_.settings.integrator, flight, time_step, duration), 0.0,

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the exact response: the life of one particle in one step, as a loop over named stages.
+/// Private to the exact response: moves one particle over one step, as a loop over named stages.
 #pragma once
 
 #include <algorithm>
@@ -21,10 +21,10 @@ namespace ricochet {
 /// 3. Resolve impact: restitution, friction and spin.
 /// 4. Begin or continue contact: if the rebound is slow, the particle slides, rolls or rests on the surfaces.
 /// 5. Finish.
-/// Stages 2 to 4 repeat until the time is used up. Stages 1, 2 and 4 return the contact to which they have led.
+/// Stages 2 to 4 repeat until the time is used up. Stages 1, 2 and 4 return the next contact, if there is one.
 class ParticleMover {
 public:
-    /// All must outlive it.
+    /// All arguments must outlive the object.
     ParticleMover(const ResponseRules& rules, const FrameRules& frame_rules, MovingParticle& particle, double duration,
                   MoveScratch& scratch)
         : rules_(rules),
@@ -38,12 +38,12 @@ public:
 private:
     /// Result of an impact.
     struct ResolvedImpact {
-        Motion arriving;            ///< the motion before it
-        double slowest_rebound;     ///< m/s; slower rebounds are contact
-        bool meets_moving = false;  ///< one of its surfaces belongs to a body
-        bool is_fast = false;       ///< on a body, faster than the slowest rebound
-        /// Speed at which a body's velocity jump had released the particle, m/s, if the impact only resumes that
-        /// contact.
+        Motion arriving;            ///< motion before the impact
+        double slowest_rebound;     ///< m/s; slower rebounds count as contact
+        bool meets_moving = false;  ///< true if one of the surfaces belongs to a moving body
+        bool is_fast = false;       ///< true if it meets a body faster than `slowest_rebound`
+        /// Speed, in m/s, at which a velocity jump of a body had released the particle. Set if the impact only resumes
+        /// that contact.
         std::optional<double> release_speed{};
     };
 
@@ -76,7 +76,7 @@ private:
     template <class Follow>
     [[nodiscard]] std::optional<Contact> follow_in_frame_unsettled(BodyId body, Contact* contact, const Follow& follow);
 
-    // Bodies that leave the particle.
+    // Bodies that recede from the particle.
     [[nodiscard]] bool follows_receding_body(std::optional<Contact>& contact);
     [[nodiscard]] std::optional<Contact> follow_receding_body(const Contact& contact);
     [[nodiscard]] bool is_released_by_jump() const;
@@ -95,12 +95,14 @@ private:
     MovingParticle& particle_;
     ParticleStep step_;
     ContactPhase contact_phase_;
-    std::uint32_t meetings_at_check_ = 0;  // of may_answer()
+    std::uint32_t meetings_at_check_ = 0;  // meetings() at the last check in may_answer()
     double remaining_at_check_ = std::numeric_limits<double>::infinity();
-    int shared_count_ = 0;         // of contacts with several frames at once
-    bool has_met_moving_ = false;  // a surface of a body, in this step
-    bool flies_anew_ = false;      // the next flight does not continue the last one: it begins after contact on a body
-    /// For the rest of the step. Another kick would lead a particle that leaves a surface back onto it at once.
+    int shared_count_ = 0;         // number of contacts with several frames at once
+    bool has_met_moving_ = false;  // true if it has touched a surface of a body in this step
+    bool flies_anew_ = false;      // true if the next flight begins after contact on a body, and does not continue the
+                                   // last one
+    /// True if flights in the rest of the step start without a kick. Another kick would move a particle that leaves a
+    /// surface back onto it at once.
     bool is_without_impulse_ = false;
     /// Set in flight after a velocity jump of a body has released the particle. See ContactState::release_speed().
     std::optional<double> release_speed_;

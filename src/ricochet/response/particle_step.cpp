@@ -12,7 +12,7 @@ void StepTime::begin_substep(double until, MovingParticle& particle) {
         whole_step_end_ = particle.step_end;
         rest_after_substep_ = 0.0;
     }
-    // Beyond the step's end, dynamic bodies can still get other paths.
+    // Limited to the step's end, because dynamic bodies can still get other paths beyond it.
     until = std::min(until, particle.step_end);
     substep_end_ = until;
     const double part = std::clamp(until - particle.state.time, 0.0, remaining_);
@@ -59,7 +59,7 @@ void ParticleStep::enter(BodyId body, const ResponseRules& rules, Contact* conta
     state().position = pose.local_position(stored.position);
     state().velocity = motion.velocity;
     particle_.spin = motion.spin;
-    // Positions are stored in the world. So contact needs the offset for the rounding of the world's coordinates.
+    // Positions are stored in world coordinates, so the contact offset must cover the rounding of these coordinates.
     const MotionBounds& bounds = rules.bodies.bounds(body);
     const double path_length = remaining() * (bounds.origin[1] + bounds.rotation[1] * length(state().position));
     const double reach = max_abs(stored.position) + path_length + max_abs(pose.world_from_frame.translation);
@@ -74,7 +74,7 @@ void ParticleStep::enter(BodyId body, const ResponseRules& rules, Contact* conta
 
 void ParticleStep::leave(const ResponseRules& rules, Contact* contact) {
     const ReferenceFrame before = reference_;
-    // At a key of the body's motion, its velocity before the key counts.
+    // At a key time of the body's motion, its velocity before the key is used.
     const std::optional<double>& substep_end = time_.substep_end();
     const bool is_at_key = substep_end && remaining() <= 0.0;
     const double time = is_at_key ? std::nextafter(*substep_end, 0.0) : state().time;

@@ -1,5 +1,6 @@
 /// \file
-/// Private to the exact response: the state of one particle within a step. The stages of its motion pass it along.
+/// Private to the exact response: the state of one particle within a step. All stages of its motion use the same
+/// object.
 #pragma once
 
 #include <algorithm>
@@ -16,22 +17,22 @@
 
 namespace ricochet {
 
-/// Time left of a step, in s. A step may contain a substep that ends earlier: a body that the particle touches has
-/// another velocity from there on.
+/// Remaining time of a step, in s. A step may contain a substep that ends earlier, when the velocity of a touched body
+/// changes.
 class StepTime {
 public:
     explicit StepTime(double duration) : duration_(duration), remaining_(duration) {}
 
-    [[nodiscard]] double duration() const { return duration_; }    ///< of the whole step
-    [[nodiscard]] double remaining() const { return remaining_; }  ///< of the substep, or of the step without one
+    [[nodiscard]] double duration() const { return duration_; }    ///< s, of the whole step
+    [[nodiscard]] double remaining() const { return remaining_; }  ///< s, of the substep, if any, else of the step
     [[nodiscard]] const std::optional<double>& substep_end() const { return substep_end_; }
 
     void pass(double duration) { remaining_ = std::max(0.0, remaining_ - duration); }
     void end() { remaining_ = 0.0; }
-    /// Begins a substep that ends at a time, or with the step. MovingParticle::step_end becomes its end. Within a
-    /// substep it shortens that one, and both end together.
+    /// Begins a substep that ends at `until`, but not after the step. Sets MovingParticle::step_end to this end. If a
+    /// substep has begun already, shortens it, so that both end together.
     void begin_substep(double until, MovingParticle& particle);
-    /// Ends the substep, if there is one. If its time is used up, the particle's time becomes its end.
+    /// Ends the substep, if there is one. If its time is used up, sets the particle's time to the end of the substep.
     void end_substep(MovingParticle& particle);
 
 private:
@@ -50,22 +51,22 @@ public:
         begin(particle.state.position, scratch);
     }
 
-    /// Returns true if colliders move. Otherwise the stored position and the times of segments have no meaning.
+    /// Returns true if colliders move. Otherwise the stored position and the times of segments are not used.
     [[nodiscard]] bool is_timed() const { return is_timed_; }
-    /// The position in the world, and its time.
+    /// Returns the position in the world, and its time.
     [[nodiscard]] const StoredPosition& stored() const { return stored_; }
     void store(const StoredPosition& position) { stored_ = position; }
-    /// Adds a segment from the stored position to the next one, and stores that. recorded_at: Segment::time.
+    /// Adds a segment from the stored position to `next`, and stores `next`. recorded_at: Segment::time.
     void add(const StoredPosition& next, double recorded_at, MoveScratch& scratch);
     /// Begins a new chain at a position in the reference frame.
     void begin(const Vec3& position, const MoveScratch& scratch) {
         start_ = position;
         first_segment_ = scratch.segments.size();
     }
-    /// Start of the chain in the reference frame. If the particle was placed on a surface, this is its position beside
-    /// it.
+    /// Returns the start of the chain in the reference frame. If the particle was placed on a surface, this is its
+    /// position beside the surface.
     [[nodiscard]] const Vec3& start() const { return start_; }
-    /// Number of the first segment in MoveScratch::segments.
+    /// Returns the index of the chain's first segment in MoveScratch::segments.
     [[nodiscard]] std::size_t first_segment() const { return first_segment_; }
 
 private:
@@ -76,13 +77,17 @@ private:
 };
 
 /// One particle within a step. Its state is given in the reference frame: the world, or the frame of a body that it
-/// touches. The stored position is in the world. Stages read and change it:
-/// path_motion.h (fly, and find contacts), certified_motion.h (certify segments, and stop), carried_particle.h (wait
-/// among moving colliders), impact_resolver.h (impacts) and contact_phase.h (contact).
-/// All of them refer to the one MovingParticle that the caller of the response stores after the move.
+/// touches. The stored position is in the world. These stages read and change the object:
+/// - path_motion.h flies and finds contacts.
+/// - certified_motion.h certifies segments and stops the particle.
+/// - carried_particle.h lets the particle wait among moving colliders.
+/// - impact_resolver.h resolves impacts.
+/// - contact_phase.h follows contact.
+///
+/// All of them refer to the same MovingParticle, which the caller of the response stores after the move.
 class ParticleStep {
 public:
-    /// rules, particle and scratch must outlive it.
+    /// rules, particle and scratch must outlive the object.
     ParticleStep(const ResponseRules& rules, MovingParticle& particle, double duration, MoveScratch& scratch);
     ParticleStep(const ParticleStep&) = delete;
     ParticleStep& operator=(const ParticleStep&) = delete;
@@ -95,7 +100,8 @@ public:
     [[nodiscard]] MoveScratch& scratch() const { return scratch_; }
     [[nodiscard]] const SurfaceGeometry& geometry() const { return geometry_; }
     [[nodiscard]] const ReferenceFrame& reference() const { return reference_; }
-    /// Changes the reference frame from the world to a body's. rules: of that frame. Also turns the contact's normals.
+    /// Changes the reference frame from the world to that of a body. rules: rules of that frame. Also transforms the
+    /// contact's normals.
     void enter(BodyId body, const ResponseRules& rules, Contact* contact);
     /// Changes the reference frame back to the world.
     void leave(const ResponseRules& rules, Contact* contact);
@@ -123,7 +129,7 @@ public:
     [[nodiscard]] SegmentChain& chain() { return chain_; }
     [[nodiscard]] const SegmentChain& chain() const { return chain_; }
 
-    // Whether a moving collider may come near.
+    // Tests for moving colliders that may come near.
 
     [[nodiscard]] PathClock clock_of(const Path& path) const;
     /// Returns false if all moving colliders stay away from the path.
@@ -136,14 +142,14 @@ public:
 
     // Limits.
 
-    /// Speed of the slowest rebound, m/s: the scene's resting speed, or more for a dynamic body.
+    /// Returns the speed of the slowest rebound, in m/s: the scene's resting speed, or more for a dynamic body.
     [[nodiscard]] double resting_speed() const { return resting_speed_; }
     void set_resting_speed(double speed) { resting_speed_ = speed; }
     /// Counts a contact interval.
     void note_interval() { ++intervals_; }
-    /// Returns false if the budget of bounces is used up. The first kFreeIntervals contact intervals are free. Later,
-    /// kIntervalsOfBounce of them count as one bounce. Without that, fast sliding in a round shape of nearly the
-    /// sphere's size could use the free number again after every impact.
+    /// Returns false if the budget of bounces is used up. The first kFreeIntervals contact intervals are free. After
+    /// these, kIntervalsOfBounce intervals count as one bounce. Without this rule, fast sliding in a round shape of
+    /// nearly the sphere's size could use kFreeIntervals intervals after every impact.
     [[nodiscard]] bool has_budget() const {
         const std::uint32_t intervals = std::max(intervals_, kFreeIntervals) - kFreeIntervals;
         const std::uint32_t spent = particle_.bounces_before + outcome_.meetings() + intervals / kIntervalsOfBounce;
@@ -166,7 +172,7 @@ private:
     SegmentChain chain_;
     StepTime time_;
     double resting_speed_;
-    std::uint32_t intervals_ = 0;  // of contact
+    std::uint32_t intervals_ = 0;  // number of contact intervals
 };
 
 }  // namespace ricochet

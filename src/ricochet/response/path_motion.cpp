@@ -15,7 +15,7 @@ struct PathProgress {
     double elapsed = 0.0;  ///< s
 };
 
-/// Freezes the particle if the path cannot be followed.
+/// Returns true if the path can be followed. Otherwise freezes the particle.
 bool can_follow(ParticleStep& step, const Path& path) {
     if (can_be_followed(path)) return true;
     step.outcome().end = MoveEnd::frozen;
@@ -67,7 +67,7 @@ void record_flown_in_world(ParticleStep& step, const Path& path, double duration
     step.scratch().flown.push_back({in_world, time, duration, begin.velocity, end.velocity, false});
 }
 
-/// Records the piece of a path that the particle has just followed, if that is asked for.
+/// Records the piece of a path that the particle has just followed, if MoveScratch::record_flown is set.
 void record_flown(ParticleStep& step, const Path& path, double duration, const Vec3& initial_velocity, bool is_free) {
     if (!step.scratch().record_flown) return;
     if (step.reference().is_moving()) {
@@ -121,7 +121,7 @@ std::optional<Contact> follow_path(ParticleStep& step, const Path& path, std::sp
     const ContactQuery query{followed, state.radius, nullptr, {}, supports};
     const auto is_refined = [&](const std::optional<Contact>& contact) {
         const std::optional<Path> next = contact ? refine(contact->time, followed) : std::nullopt;
-        // A cubic of almost no duration has coefficients beyond all bounds. The longer path is good enough.
+        // A cubic of almost zero duration has coefficients that are too large. The longer path is accurate enough.
         if (!next || !can_be_followed(*next)) return false;
         followed = *next;
         return true;
@@ -168,7 +168,7 @@ std::optional<Contact> wait_in_place(ParticleStep& step, double duration, std::s
         return std::nullopt;
     }
     const PathProgress progress = follow_among_bodies(step, {here, state.radius, nullptr, {}, supports});
-    if (!progress.contact) state.position = here.end;  // to the last bit, whatever its frame does
+    if (!progress.contact) state.position = here.end;  // exact to the last bit, however its frame moves
     record_flown(step, here, progress.elapsed, Vec3{}, false);
     return progress.contact;
 }

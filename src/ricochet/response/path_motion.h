@@ -2,8 +2,8 @@
 /// Private to the exact response: moves a particle along a path, in free flight or along surfaces, up to the first
 /// contact.
 ///
-/// Each function finds the first contact, moves the particle there in certified segments, and lets its time pass. A
-/// path whose numbers are too large cannot be followed: the particle is frozen.
+/// Each function finds the first contact, moves the particle there in certified segments, and advances its time. A path
+/// whose numbers are too large cannot be followed: the particle is frozen.
 #pragma once
 
 #include <optional>
@@ -21,8 +21,9 @@ namespace ricochet {
 std::optional<Contact> follow_flight(ParticleStep& step, const Flight& flight, const Integrator& integrator,
                                      const LookAhead* look_ahead, const ContactCandidates& candidates);
 
-/// Returns a shorter path after a contact at a time on an approximate path. Returns nothing if that path is close
-/// enough to the true motion at that time. A reference to a function object, which must outlive it.
+/// Reference to a function object that refines an approximate path. After a contact at a time on the path, the function
+/// returns a shorter path. It returns nothing if the path is close enough to the true motion at that time. The function
+/// object must outlive the reference.
 class PathRefinement {
 public:
     template <class Refine>
@@ -39,9 +40,10 @@ private:
     std::optional<Path> (*call_)(const void*, double, const Path&);
 };
 
-/// Follows a path whose velocity is the particle's. supports: surfaces along which it leads, see ContactQuery.
+/// Follows a path. The particle gets the velocity of the path. supports: surfaces along which the path leads, see
+/// ContactQuery.
 std::optional<Contact> follow_path(ParticleStep& step, const Path& path, std::span<const SurfaceId> supports = {});
-/// Follows an approximate path. After a contact it tries the refined path, as long as there is one.
+/// Follows an approximate path. After a contact it tries the refined path instead, as long as `refine` returns one.
 std::optional<Contact> follow_path(ParticleStep& step, const Path& path, std::span<const SurfaceId> supports,
                                    const PathRefinement& refine);
 
@@ -63,7 +65,7 @@ private:
 /// Follows a straight path that is known to touch nothing.
 void follow_clear_path(ParticleStep& step, const Path& line);
 
-/// Lets time pass at the particle's position, in s. Returns a contact with a collider that moves to it. supports: see
+/// Keeps the particle at its position for a duration, in s. Returns a contact if a collider moves to it. supports: see
 /// ContactQuery.
 std::optional<Contact> wait_in_place(ParticleStep& step, double duration, std::span<const SurfaceId> supports = {});
 

@@ -14,21 +14,22 @@
 namespace ricochet {
 namespace {
 
-/// Halvings of the bracket of a damping ratio. Local: it ends below the rounding of the result.
+/// Number of halvings of the bracket of a damping ratio. Local, because the bisection ends below the rounding of its
+/// result.
 constexpr int kHalvings = 64;
 
 /// Damping ratio above that of every restitution in use. Local: the upper end of a bracket.
 constexpr double kLargestRatio = 16.0;
 
-/// Effective mass of slip at a sphere's contact, over its mass: 1 / (1 + 5 / 2), because an impulse changes the slip by
-/// the spin 5/2 times as much as by the velocity. A mathematical constant.
+/// Effective mass for slip at a sphere's contact, divided by the sphere's mass: 1 / (1 + 5 / 2). Reason: an impulse
+/// changes the slip through the spin 5/2 times as much as through the velocity. A mathematical constant.
 constexpr double kSlipShare = 2.0 / 7.0;
 
-/// Moment of inertia of a solid sphere over m r^2. A mathematical constant.
+/// Moment of inertia of a solid sphere divided by m r^2. A mathematical constant.
 constexpr double kSphereInertia = 0.4;
 
-/// Returns the brake on a motion v: a vector of length `most` against v. It grows linearly with v up to the speed, and
-/// is never more than `stopping` times v.
+/// Returns the braking force on a motion v: a vector of length `most` against v. Below `speed`, its length is
+/// proportional to that of v. It never exceeds `stopping` times v.
 Vec3 brake(const Vec3& v, double most, double speed, double stopping) {
     return -std::min(most / std::max(length(v), speed), stopping) * v;
 }
@@ -67,7 +68,7 @@ public:
           stage_(lists.stage) {}
 
     MoveOutcome run(double duration);
-    /// Returns a pull, in m/s^2, with the accelerations of the contacts at the present position.
+    /// Returns the acceleration `pull`, in m/s^2, plus the accelerations by the contacts at the present position.
     [[nodiscard]] SupportedAcceleration supported_acceleration(const Vec3& pull);
 
 private:
@@ -122,7 +123,7 @@ SupportedAcceleration PenaltyMover::supported_acceleration(const Vec3& pull) {
     return {pull + (contact_force.acceleration - rules_.forces.acceleration(state_)), contact_force.spin_acceleration};
 }
 
-/// Makes one wide query instead of one per sub-step. It suffices while nothing is near.
+/// Makes one wide query, which replaces the queries of the sub-steps while nothing is near.
 void PenaltyMover::survey(double duration) {
     const double pull = length(rules_.forces.acceleration(state_));
     const double distance = duration * (length(state_.velocity) + duration * pull);
@@ -131,7 +132,7 @@ void PenaltyMover::survey(double duration) {
         watch_.survey(state_.position, distance + substep_distance + state_.radius);
 }
 
-/// Takes one sub-step. Returns false if the state cannot be followed; it is then unchanged.
+/// Takes one sub-step. Returns false if the new state is out of range. The state is then unchanged.
 bool PenaltyMover::substep(double h) {
     const Vec3 from = state_.position;
     auto next = stepped({from, {state_.velocity, particle_.spin}}, h);
@@ -171,7 +172,7 @@ std::optional<BodyState> PenaltyMover::stepped(const BodyState& now, double h) {
 }
 
 /// Takes a step of velocity Verlet (L. Verlet 1967; velocity form: W. C. Swope et al., J. Chem. Phys. 76, 1982). Forces
-/// that depend on the velocity use the one predicted with the first force.
+/// that depend on the velocity use the velocity predicted with the first force.
 std::optional<BodyState> PenaltyMover::verlet(const BodyState& now, double h) {
     const ContactForces k0 = force_at(now, state_.time, seen_, 0.5 * h);
     BodyState next;
@@ -242,8 +243,8 @@ PenaltyContact PenaltyMover::contact_of(const Proximity& view, const Vec3& cente
     return contact;
 }
 
-/// Returns the accelerations by forces and contacts. weight: duration, in s, for which the integrator uses them, for
-/// the surfaces' totals.
+/// Returns the accelerations by forces and contacts. weight: duration, in s, for which the integrator uses them.
+/// Impulses on surfaces are recorded for this duration.
 ContactForces PenaltyMover::force_at(const BodyState& body, double time, const std::vector<Proximity>& contacts,
                                      double weight) {
     ForceInput input = state_;
@@ -263,8 +264,8 @@ ContactForces PenaltyMover::force_at(const BodyState& body, double time, const s
     return contact_force;
 }
 
-/// Counts and records the contacts that begin at the particle's position. Surfaces with random reflection resolve them
-/// at once.
+/// Counts and records the contacts that begin at the particle's position. On surfaces that absorb or reflect at random,
+/// contacts are resolved at once as impacts.
 void PenaltyMover::begin_contacts() {
     for (const Proximity& view : seen_) {
         if (watch_.memory(view.collider).touching) continue;
@@ -276,7 +277,7 @@ void PenaltyMover::begin_contacts() {
         } else {
             impact_.ledger().record_impulse(view.surface, Vec3{}, true);
             impact_.ledger().log_contact(surface, state_.velocity);
-            // The contact has no impulse yet. The approach along the normal is used instead.
+            // The contact has no impulse yet, so the approach velocity along the normal decides about shattering.
             impact_.shatter_by(std::min(0.0, dot(state_.velocity, view.normal)) * view.normal);
             if (outcome_.is_absorbed()) return;
         }

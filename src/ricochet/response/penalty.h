@@ -9,24 +9,26 @@
 /// Structures", section 6.2 (central differences with lagging damping).
 ///
 /// The force on a particle at depth d is max(0, k d + c d') along the normal. Friction mu N acts against the slip; it
-/// grows linearly up to PenaltySettings::friction_speed. No braking force exceeds the one that stops its motion in one
-/// sub-step. The force is part of the acceleration that the scene's integrator uses, in sub-steps. The integrator
-/// `ballistic`, which holds forces over a step, becomes velocity Verlet: the same parabola under a constant force.
-/// Surfaces that absorb or reflect diffusely resolve the beginning of a contact at once.
+/// grows linearly up to PenaltySettings::friction_speed. No braking force exceeds the force that stops its motion in
+/// one sub-step. The scene's integrator uses the contact force as part of the acceleration, in sub-steps. The
+/// integrator `ballistic`, which keeps forces constant over a step, is replaced by velocity Verlet. Both give the same
+/// parabola under a constant force. On surfaces that absorb or reflect diffusely, the start of a contact is resolved at
+/// once as an impact.
 ///
 /// Limits:
-/// - Particles enter surfaces. The depth under weight is m g / k, in an impact v sqrt(m / k).
-/// - A wall may not hold if it is thinner than twice that depth, or than a sub-step is long. A particle deeper than its
-///   middle is pushed out on the far side.
-/// - Restitution does not fall below a threshold: Material::restitution_threshold is not used.
-/// - Restitution and friction are of first order in the sub-steps per contact. Without a stiffness, that number does
-///   not grow as steps shrink.
-/// - Sub-steps beyond longest_stable_step() are not stable. `midpoint` is never stable, since it feeds springs without
-///   damping.
-/// - Particles at rest on slopes creep, because friction needs slip. Friction oscillates if that of a sub-step, mu g h,
-///   exceeds 2 friction_speed.
+/// - Particles enter surfaces. The depth is m g / k under weight, and v sqrt(m / k) in an impact.
+/// - Particles may pass through a wall that is thinner than twice that depth, or thinner than the path of a sub-step. A
+///   particle deeper than the middle of a wall is pushed out on the far side.
+/// - Restitution does not decrease at low approach speeds: Material::restitution_threshold is not used.
+/// - The errors of restitution and friction are inversely proportional to the number of sub-steps per contact. If no
+///   stiffness is given, this number does not grow as steps become shorter.
+/// - Sub-steps beyond longest_stable_step() are not stable. `midpoint` is never stable, because it adds energy to
+///   springs without damping.
+/// - Particles at rest on slopes creep, because friction needs slip. Friction oscillates if it changes the velocity in
+///   a sub-step by mu g h > 2 friction_speed.
 /// - Restitution is at least kMinPenaltyRestitution.
-/// - Walls of one collider do not act together. Each collider pushes only from its nearest point.
+/// - Several walls of one collider do not act at the same time, because each collider pushes only from its nearest
+///   point.
 #pragma once
 
 #include "ricochet/collision/signed_distance.h"
@@ -41,14 +43,14 @@ struct ContactSpring {
     double damping = 0.0;    ///< kg/s
 };
 
-/// Returns the damping over 2 sqrt(k m) of a contact with the restitution e. The contact ends when its force would
-/// begin to pull (Schwager and Poeschel 2007). e in [0, 1]; values below kMinPenaltyRestitution count as that.
+/// Returns the damping, divided by 2 sqrt(k m), of a contact with the restitution e. The contact ends when its force
+/// would begin to pull (Schwager and Poeschel 2007). e in [0, 1]; kMinPenaltyRestitution replaces smaller values.
 [[nodiscard]] double damping_ratio(double restitution);
 /// Returns the restitution of a damping ratio >= 0: the inverse of damping_ratio().
 [[nodiscard]] double restitution_of_damping(double ratio);
 
-/// Returns the spring constant, in N/m, for a particle of mass m, in kg: the scene's, or the one of
-/// PenaltySettings::contact_steps.
+/// Returns the spring constant, in N/m, for a particle of mass m, in kg: the scene's value, or the value that
+/// PenaltySettings::contact_steps determines.
 [[nodiscard]] double contact_stiffness(const ResponseSettings& settings, double mass);
 /// Returns the spring and damper for a particle of mass m, in kg, on a surface of restitution e.
 [[nodiscard]] ContactSpring contact_spring(const ResponseSettings& settings, double mass, double restitution);
@@ -56,7 +58,7 @@ struct ContactSpring {
 /// Returns the longest stable sub-step, in s, of a spring and damper on mass m: 2 / omega (sqrt(1 + zeta^2) - zeta).
 [[nodiscard]] double longest_stable_step(const ContactSpring& spring, double mass);
 
-/// A contact as input of its force.
+/// Input of force_of(): one contact.
 struct PenaltyContact {
     double depth = 0.0;  ///< m, > 0
     Vec3 normal;         ///< unit, outwards
@@ -78,13 +80,14 @@ struct ContactForce {
 
 /// Limits of the force laws.
 struct ContactLimits {
-    double friction_speed = 1e-3;  ///< m/s, up to which friction grows linearly
+    double friction_speed = 1e-3;  ///< m/s, slip speed up to which friction grows linearly
     double step = 0.0;             ///< s, duration for which the integrator uses the force
 };
 
 /// Returns the force of a contact: max(0, k d + c d') along the normal, friction against the slip, moments against
 /// rolling and spinning. The braking parts (the damper, friction, the moments) are at most as large as needed to stop
-/// their motion within the step. Without this limit, an explicit step would reverse the motion and add energy.
+/// the motion that they brake within the step. Without this limit, an explicit step would reverse the motion and add
+/// energy.
 [[nodiscard]] ContactForce force_of(const PenaltyContact& contact, const Motion& motion, double radius,
                                     const ContactLimits& limits);
 

@@ -29,8 +29,8 @@ public:
         contacts_.clear();
     }
 
-    /// Returns the surfaces that the particle touches at its position: nearer than twice the offset at which it is
-    /// placed.
+    /// Returns the surfaces that the particle touches at its position. A surface is touched if it is nearer than twice
+    /// the offset at which particles are placed.
     std::span<const ContactSurface> touched() {
         watch_.find_near(from_, from_, 2.0 * offset(), seen_);
         for (const Proximity& view : seen_) touch(view);
@@ -50,7 +50,8 @@ public:
     }
 
 private:
-    /// Flies the whole step, in as many flights as the method needs. Returns false if the state cannot be followed.
+    /// Moves the particle through the whole step, in as many flights as the integrator needs. Returns false if the
+    /// state cannot be followed.
     bool fly(double duration) {
         const double end = state_.time + duration;
         Flight flight;
@@ -78,8 +79,8 @@ private:
         return std::max(rules_.settings.project.offset, contact_offset(state_.position));
     }
 
-    /// Returns a position that is behind no surface. Each pass projects out of the deepest surface. Returns the
-    /// position at the start if kMaxProjections passes do not suffice.
+    /// Returns a position that is behind no surface. Each pass projects the position out of the surface behind which it
+    /// is deepest. Returns the position at the start if kMaxProjections passes do not suffice.
     Vec3 put_back(Vec3 position) {
         for (int pass = 0; pass < kMaxProjections; ++pass) {
             watch_.find_near(position, from_, offset(), seen_);
@@ -104,7 +105,7 @@ private:
         if (!known) contacts_.push_back({view.surface, view.normal, true});
     }
 
-    /// Checks whether the particle approaches the surfaces, and resolves the impact.
+    /// Resolves an impact if the particle approaches one of the surfaces.
     void resolve(double duration) {
         const bool approaches = std::any_of(contacts_.begin(), contacts_.end(), [&](const ContactSurface& contact) {
             return dot(state_.velocity, contact.normal) < 0.0;

@@ -12,12 +12,12 @@
 
 namespace ricochet {
 
-/// The frame in which a particle's motion is given: the world, or a body's.
+/// The frame in which a particle's motion is given: the world frame, or the frame of a body.
 class ReferenceFrame {
 public:
-    /// The bodies must outlive it.
+    /// The bodies must outlive the object.
     explicit ReferenceFrame(const MovingColliders& bodies, BodyId body = kWorldBody) : bodies_(&bodies), body_(body) {}
-    /// Returns a frame that is always the world's.
+    /// Returns a frame that is always the world frame.
     [[nodiscard]] static const ReferenceFrame& world() {
         static const ReferenceFrame frame;
         return frame;
@@ -46,7 +46,7 @@ private:
 /// adds. Source: H. Goldstein, C. Poole, J. Safko, "Classical Mechanics", 3rd ed., section 4.10.
 class FrameForces final : public Force {
 public:
-    /// Both must outlive it.
+    /// The forces and the bodies must outlive the object.
     FrameForces(const ForceField& forces, const MovingColliders& bodies, BodyId body)
         : forces_(forces), bodies_(bodies), body_(body) {}
 

@@ -41,8 +41,8 @@ void check(const ResponseSettings& settings) {
     require(settings.integrator.tolerance, kToleranceTable, "tolerance.");
 }
 
-/// Refuses adaptive methods if particles step together, or in sub-steps: then a particle cannot choose its steps.
-/// Refuses implicit methods for sub-steps.
+/// Rejects adaptive methods if particles step together or in sub-steps, because a particle then cannot choose its step
+/// size. Rejects implicit methods for sub-steps.
 void check_integrator(ResponseKind kind, const ResponseSettings& settings) {
     const bool together = kind == ResponseKind::rollback && settings.rollback.global;
     const bool is_adaptive = settings.integrator.kind == IntegratorKind::dormand_prince;
@@ -57,7 +57,7 @@ void check_integrator(ResponseKind kind, const ResponseSettings& settings) {
     }
 }
 
-/// Checks the rules of first-order motion. It has its own integrators, one response, and no forces.
+/// Checks the rules of first-order motion, which has its own integrators, only one response, and no forces.
 void check_flow(ResponseKind kind, const ResponseRules& rules) {
     if (kind != ResponseKind::exact) {
         throw InputError(
@@ -102,7 +102,7 @@ void Response::apply_correction(MovingParticle& particle, const Vec3& change, do
     ImpactResolver impact(rules_, particle, scratch, outcome);
     Vec3 corrections = change;
     if (particle.contact.count > 0 && rules_.bodies.body_of(particle.contact.surfaces[0]) != kWorldBody) {
-        // The particle moves with its body, which takes the late correction.
+        // The particle moves with its body, so the body receives the correction.
         impact.ledger().record_impulse(particle.contact.surfaces[0], -corrections, false, Vec3{});
         impact.ledger().close();
         return;
@@ -113,7 +113,7 @@ void Response::apply_correction(MovingParticle& particle, const Vec3& change, do
     if (after.count > 0) {
         const Vec3 kept = duration * (after.acceleration - before.acceleration);
         const Vec3 by_surfaces = kept - change;
-        // Records the increase of each reaction. The first surface also gets the rounding.
+        // Records the increase of each reaction. The first surface also gets the rounding error.
         Vec3 left = by_surfaces;
         for (std::size_t k = 1; k < after.count; ++k) {
             Vec3 given = duration * after.reaction[k];

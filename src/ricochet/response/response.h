@@ -31,7 +31,7 @@ struct SurfaceHit {
     SurfaceId surface = 0;
     Vec3 impulse;        ///< N s, given to the surface
     bool impact = true;  ///< false: an impulse of a contact interval
-    bool again = false;  ///< a further pass of an impact that is counted already
+    bool again = false;  ///< true: a further pass of an impact that has already been counted
 };
 
 /// Effect of a particle on a moving collider, or one with moving material, at one time or in one interval.
@@ -42,12 +42,12 @@ struct ColliderLoad {
     double mass = 0.0;         ///< kg, of the particle
     Vec3 impulse;              ///< N s, given to the surface
     Vec3 moment;               ///< N m s, given about the origin of the collider's frame, in world axes
-    Vec3 particle_center;      ///< m, of the particle's centre in the world
+    Vec3 particle_center;      ///< m, position of the particle's centre in the world
     Vec3 couple;               ///< N m s, given in addition to the moment of the impulse at `particle_center`
-    double work = 0.0;         ///< J, given
+    double work = 0.0;         ///< J, done on the collider
     double lost_energy = 0.0;  ///< J, kinetic energy that the particle has lost by the impact; set in the last load of
                                ///< an impact
-    double approach = 0.0;     ///< m/s, of the impact; 0 if it is slow, and begins contact
+    double approach = 0.0;     ///< m/s, approach speed of the impact; 0 for a slow impact, which begins contact
     bool impact = true;        ///< false: lasting contact
     bool is_hit = true;        ///< false: resumes a contact that a body's jump has interrupted; ColliderTotals::hits
                                ///< omits it
@@ -69,17 +69,18 @@ struct MoveScratch {
     bool record_flown = false;
     bool record_motions = false;
     bool record_loads = false;
-    bool driven = false;  ///< a surface that moves or has a temperature has acted since the last MotionPart
+    bool driven = false;  ///< true if a surface that moves or has a temperature has acted since the last MotionPart
 };
 
 /// Surfaces on which a particle slides, rolls or rests, from one step to the next.
 struct ContactState {
     std::array<SurfaceId, 3> surfaces{};  ///< 0 beyond count
     std::uint8_t count = 0;               ///< 0: the particle flies
-    double cascade_left = 0.0;            ///< s, rest of a bounce cascade that the end of the step has interrupted
+    double cascade_left = 0.0;            ///< s, remaining time of a bounce cascade that the end of the step has
+                                          ///< interrupted
 
-    /// Marks a particle that was placed in contact with these surfaces, and perhaps with more. Local: a mark, not a
-    /// distance.
+    /// Value of `cascade_left` for a particle that was placed in contact with these surfaces, and perhaps with more.
+    /// Local: a mark, not a distance.
     static constexpr double kPlaced = -1.0;
     [[nodiscard]] bool is_placed() const { return cascade_left == kPlaced; }
 
@@ -98,15 +99,15 @@ private:
     static constexpr double kLetGo = -2.0;
 };
 
-/// Memory of one particle and one collider, for responses that test only the end of a step.
+/// Side of one particle relative to one collider, stored for responses that test only the end of a step.
 struct SideMemory {
-    std::int8_t side = 0;      ///< sign of the side that it belongs to (SurfacePoint::side); 0: not known yet
-    bool penetrating = false;  ///< it was behind the surface when it was last tested
-    bool touching = false;     ///< it was in contact at the last test
-    float depth = 0.0F;        ///< m, lower bound of its depth behind the surface, if it was behind
+    std::int8_t side = 0;      ///< sign of the particle's own side (SurfacePoint::side); 0: not known yet
+    bool penetrating = false;  ///< true: it was behind the surface at the last test
+    bool touching = false;     ///< true: it was in contact at the last test
+    float depth = 0.0F;        ///< m, upper bound of its depth behind the surface, if it was behind
 };
 
-/// One particle as a response moves it.
+/// State of one particle that a response moves.
 struct MovingParticle {
     ForceInput state;  ///< position, velocity, mass, radius, time
     Vec3 spin;         ///< rad/s
@@ -114,31 +115,30 @@ struct MovingParticle {
     std::uint32_t draws = 0;           ///< random numbers drawn so far by this particle's impacts
     ContactState contact{};            ///< contact that continues in the next step
     std::span<SideMemory> sides = {};  ///< one per collider, for responses that keep sides; updated in place
-    /// Impulse, in N s: an impact that changes the particle's momentum by as much removes it there, as if it were
-    /// absorbed.
+    /// Impulse, in N s, that shatters the particle. An impact that changes the particle's momentum by at least this
+    /// much removes the particle, like absorption.
     double shatter_impulse = std::numeric_limits<double>::infinity();
     /// Flight of the whole step, if particles act on each other and are stepped together. Null: the particle's own
     /// integrator computes it. It must outlive the move.
     const Flight* planned = nullptr;
-    ContactCandidates candidates = {};  ///< computed in this step (MoveOutcome::candidates of the last one)
+    ContactCandidates candidates = {};  ///< candidates in this step, from MoveOutcome::candidates of the last step
 
     // Used only if colliders move.
 
-    /// Time of the stored position, in s. It is before state.time if the particle was squeezed and its stored time
-    /// stood still.
+    /// Time of the stored position, in s. It is earlier than state.time if the particle is stalled.
     double stored_time = 0.0;
     double step_end = 0.0;  ///< s, time at which the next move begins
     /// Impacts in earlier substeps of the time step. All substeps share one budget.
     std::uint32_t bounces_before = 0;
-    /// Position and spin at rest on a body, in the body's frame, if the particle is attached to it. Only with a contact
-    /// state.
+    /// Position and spin at rest on a body, in the body's frame, if the particle is attached to it. Set only together
+    /// with a contact state.
     struct Attachment {
         Vec3 position;  ///< m
         Vec3 spin;      ///< rad/s, relative to the body
     };
     std::optional<Attachment> attachment = std::nullopt;
 
-    /// Time after the end of the move, in s, for which flights are planned. They are cut at the end of the move, but
+    /// Time after the end of the move, in s, for which flights are planned. Flights are cut at the end of the move, but
     /// their paths equal the paths of a longer move.
     double beyond = 0.0;
 };
@@ -147,7 +147,7 @@ struct MovingParticle {
 enum class MoveEnd : std::uint8_t {
     moving,     ///< in flight, sliding or rolling
     resting,    ///< at rest on its supports
-    held,       ///< at rest, held by friction and supports; it stays while the forces do
+    held,       ///< at rest, held by friction and supports; it stays at rest until the forces change
     frozen,     ///< the state left the range of the arithmetic; the particle was not moved
     absorbed,   ///< an impact removed it
     shattered,  ///< an impact that reached its shatter_impulse removed it
@@ -164,15 +164,15 @@ struct MoveOutcome {
     MoveEnd end = MoveEnd::moving;
     std::uint32_t bounces = 0;      ///< number of impacts
     std::uint32_t touches = 0;      ///< number of contacts without an approach; only the budget counts them
-    double unsimulated_time = 0.0;  ///< s, cut off by a budget
-    bool is_coarse = false;         ///< an adaptive method could not keep its tolerance
+    double unsimulated_time = 0.0;  ///< s, omitted because a budget is exhausted
+    bool is_coarse = false;         ///< true if an adaptive method could not keep its tolerance
     std::uint32_t stayed = 0;       ///< number of impacts after which no certified position nearer to the surface was
                                     ///< found
-    std::uint32_t squeezed = 0;     ///< 1: its stored time stood still, between surfaces that close on it
+    std::uint32_t squeezed = 0;     ///< 1: it was stalled between closing surfaces
     std::uint32_t trials = 0;       ///< number of states tested for collision or penetration
     double depth = 0.0;             ///< m, largest depth behind a surface before a correction
-    /// Time after the end of the move, in s, for which the particle certainly touches nothing, in free flight by steps
-    /// of the run. 0 if it was not computed.
+    /// Time after the end of the move, in s, for which the particle certainly touches nothing. This is valid for free
+    /// flight in steps of the run's length. 0 if it was not computed.
     double free_for = 0.0;
     /// Time after the end of the move, in s, for which no triangles except `candidates` come near its path.
     double candidates_for = 0.0;
@@ -182,11 +182,11 @@ struct MoveOutcome {
 /// Key of the random numbers of impacts. Emitters use smaller numbers.
 inline constexpr std::uint32_t kImpactStream = 0xFFFFFFFFU;
 
-/// Acceleration of a particle at present, by forces and by the surfaces that it is in contact with.
+/// Present acceleration of a particle, by forces and by the surfaces with which it is in contact.
 struct SupportedAcceleration {
     Vec3 acceleration{};                  ///< m/s^2, including the reactions of the surfaces
     Vec3 spin_acceleration{};             ///< rad/s^2
-    std::array<SurfaceId, 3> surfaces{};  ///< the first `count`
+    std::array<SurfaceId, 3> surfaces{};  ///< the first `count` are set
     std::array<Vec3, 3> reaction{};       ///< m/s^2, of each surface
     std::uint8_t count = 0;
 };
@@ -198,11 +198,11 @@ struct ChildStart {
     Vec3 parent_start;     ///< m, at the start of the parent's move
     Vec3 position;         ///< m
     double radius = 0.0;   ///< m
-    bool goes_on = false;  ///< it is already in contact with the surfaces that it touches, as a fragment; else contact
-                           ///< begins
+    bool goes_on = false;  ///< true for a fragment, which is already in contact with the surfaces that it touches;
+                           ///< false: contact begins
 };
 
-/// Rules of a run for a response. World, bodies, forces and materials must outlive it.
+/// Rules of a run for a response. World, bodies, forces and materials must outlive the object.
 struct ResponseRules {
     const CollisionWorld& world;    ///< colliders of the reference frame
     const MovingColliders& bodies;  ///< colliders of all frames
@@ -221,8 +221,8 @@ struct ResponseRules {
     }
 };
 
-/// Returns the first flight of a step of `duration`, in s: the planned one while nothing has happened to the particle,
-/// else one of its integrator.
+/// Returns the first flight of a step of `duration`, in s: the planned flight if the particle still has the state at
+/// its start, otherwise a flight by the integrator.
 [[nodiscard]] Flight first_flight(const ResponseRules& rules, const MovingParticle& particle, double duration,
                                   const Integrator& integrator);
 [[nodiscard]] inline Flight first_flight(const ResponseRules& rules, const MovingParticle& particle, double duration) {
@@ -247,12 +247,12 @@ public:
     [[nodiscard]] virtual bool keeps_sides() const { return false; }
     /// Sets the sides of all colliders for a new particle. sides.size() == number of colliders.
     virtual void first_sides(const Vec3& position, std::span<SideMemory> sides) const;
-    /// Sets the sides for a particle that another one spawns. sides: initially the parent's sides at the start of its
+    /// Sets the sides for a particle that another one spawns. sides: on input the parent's sides at the start of its
     /// move.
     virtual void inherit_sides(const ChildStart& start, std::span<SideMemory> sides) const;
 
     /// Returns the particle's acceleration under this response, in its present contact, if forces accelerate it by
-    /// `pull`, in m/s^2. Moving surfaces do not support it here.
+    /// `pull`, in m/s^2. Moving surfaces do not count as supports here.
     [[nodiscard]] virtual SupportedAcceleration supported_acceleration(const MovingParticle& particle,
                                                                        const Vec3& pull) const;
     /// Applies a velocity correction, in m/s, to a particle at the end of its step of `duration`, in s. The correction
@@ -266,7 +266,7 @@ protected:
 };
 
 /// Returns a response of a kind. With a flow, it is the response of first-order motion (advect.h), whose kind is exact
-/// and which takes no forces. Throws an InputError if settings are out of range or do not go together.
+/// and which takes no forces. Throws an InputError if settings are out of range or incompatible.
 [[nodiscard]] std::unique_ptr<Response> make_response(ResponseKind kind, const ResponseRules& rules);
 
 }  // namespace ricochet

@@ -9,17 +9,20 @@
 namespace ricochet {
 namespace {
 
-/// Error of plain arithmetic on the distance of a point from the line of an edge, relative to the largest coordinate
-/// involved: 12 roundings of 3.5 times that coordinate are 2^-47.6 of it. Local: an error bound of this arithmetic.
+/// Error bound of the distance of a point from the line of an edge in double arithmetic, relative to the largest
+/// coordinate involved. Reason: 12 roundings of 3.5 times that coordinate are 2^-47.6 of it. Local: an error bound of
+/// this arithmetic.
 constexpr double kRimError = 0x1p-44;
 
-/// Errors of the foot of a point on a plane: of the signed distance, per slenderness of the triangle, and of the
-/// rounded coordinates. Four and two times the largest terms of the bounds. Local: error bounds of this arithmetic.
+/// Relative errors of the projection of a point onto a plane. kHeightError is that of the signed distance, per unit of
+/// the triangle's slenderness. kFootError is that of the rounded coordinates. The first is four times, and the second
+/// twice, the largest term of its error bound. Local: error bounds of this arithmetic.
 constexpr double kHeightError = 0x1p-49;
 constexpr double kFootError = 0x1p-50;
 
-/// Bounds the distance of the computed foot of p from the plane, in m. The foot is p less its signed distance times
-/// the normal. The distance loses digits on slender triangles, and the coordinates do if p is far away.
+/// Returns a bound of the distance, in m, between the plane and the computed projection of p. The projection is p minus
+/// its signed distance times the normal. The signed distance loses digits on slender triangles, and the coordinates
+/// lose digits if p is far away.
 double foot_error(const TrianglePlane& plane, const Vec3& p, double largest) {
     const double height = std::fabs(dot(p - plane.a(), plane.unit_normal()));
     const double slenderness = max_abs(plane.cross().magnitude) / max_abs(plane.cross().value);

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: decides in plain arithmetic whether a particle is above a triangle or beyond its rim.
+/// Private to the responses: decides in double arithmetic whether a particle is above a triangle or beyond its rim.
 #pragma once
 
 #include <optional>
@@ -9,10 +9,10 @@
 
 namespace ricochet {
 
-/// Returns true if the foot of p on a triangle's plane lies farther than `slack`, in m, beyond the triangle. Returns
-/// false if the foot lies inside the triangle, and std::nullopt if the error bound of plain arithmetic allows both. A
-/// result agrees with the distance of the computed foot, p less its signed distance times the normal, from the
-/// triangle.
+/// Returns true if the projection of p onto a triangle's plane lies farther than `slack`, in m, outside the triangle.
+/// Returns false if the projection lies inside the triangle, and std::nullopt if the error bound of double arithmetic
+/// allows both. A result agrees with a test of the distance between the triangle and the computed projection. That
+/// projection is p minus its signed distance times the normal.
 [[nodiscard]] std::optional<bool> is_foot_beyond(const TrianglePlane& plane, const Vec3& p, double slack);
 
 }  // namespace ricochet

@@ -12,9 +12,9 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// Next event of a particle without the rest of the system.
+/// Next event of a particle as if it moved alone.
 struct Event {
-    double elapsed = 0.0;  ///< s, time for which it can move
+    double elapsed = 0.0;  ///< s, time for which it can move before the event
     double time = kNever;  ///< s, time of a collision or of a change of contact; kNever: not in this step
     bool collides = false;
 };
@@ -59,8 +59,8 @@ private:
         return p.is_out || p.outcome.is_frozen() || p.outcome.is_absorbed();
     }
 
-    /// Returns the time, in s, at which the particle continues. After a collision, it may be ahead of the system by a
-    /// tolerance.
+    /// Returns the time, in s, at which the particle continues. After a collision, the particle may be ahead of the
+    /// system by the time tolerance.
     [[nodiscard]] static double begin_of(const SystemParticle& p, double now) {
         return std::max({now, p.start, p.particle.state.time});
     }

@@ -1,6 +1,6 @@
 /// \file
-/// The rollback response (backtracking). It takes the step, and finds that the particle has collided. Then it goes back
-/// to the time of contact, resolves the contact, and continues with the remaining time.
+/// The rollback response (backtracking). It takes the step and tests whether the particle has collided. If so, it goes
+/// back to the time of contact, resolves the contact, and continues with the remaining time.
 ///
 /// Source: the particle systems of computer graphics, e.g. A. Witkin, D. Baraff, "Physically Based Modeling", SIGGRAPH
 /// 2001 course notes, part C (colliding and resting contact; bisection for the time of collision), and M. Moore, J.
@@ -8,17 +8,18 @@
 /// Bisection brackets the time of contact to RollbackSettings::time_tolerance. Every trial is a step of the integrator
 /// from the start. The particle is placed at the bracket's free end, so the tolerance is the only error.
 ///
-/// Guarantee: the chord of every accepted step crosses no surface, exactly (obstacles.h).
+/// Guarantee: the chord of every accepted step crosses no surface, which is decided exactly (obstacles.h).
 ///
 /// Limits:
-/// - A collision may go unnoticed if the end of the step shows no trace of it: an arc that dips through a surface and
-///   comes back, or a sphere that brushes past an edge.
-/// - A noticed collision may not be real: a chord may cut a corner over which the arc passes. The sag is up to a h^2 /
-///   8.
-/// - The first of several collisions may not be the one found. Bisection finds one at which free turns into blocked.
+/// - A collision is not detected if the chord of the step shows no sign of it. Examples are an arc that dips through a
+///   surface and comes back, and a sphere that brushes past an edge.
+/// - A detected collision may not be real, because a chord may cut a corner that the arc passes. The distance of the
+///   arc from the chord is up to a h^2 / 8.
+/// - If several collisions occur in a step, bisection finds one of them, which need not be the first.
 /// - The time of impact is not more accurate than the tolerance.
-/// - Sliding along a surface that bends away does not follow it, and friction does not feel a bowl's curvature.
-/// - With the symplectic Euler step, `global` does not keep the energy, because every part of a step kicks anew.
+/// - A particle that slides along a convex surface does not follow it. Friction does not include the pressure by the
+///   curvature of a bowl.
+/// - With the symplectic Euler step, `global` does not keep the energy, because every part of a step has its own kick.
 #pragma once
 
 #include <optional>
@@ -33,7 +34,7 @@
 
 namespace ricochet {
 
-/// See the top of this file. Each particle goes back by itself; move_together() is the classic alternative.
+/// See the top of this file. Each particle goes back individually; move_together() is the classic alternative.
 class RollbackResponse final : public Response {
 public:
     explicit RollbackResponse(const ResponseRules& rules) : Response(rules) {}
@@ -51,16 +52,18 @@ struct SystemParticle {
     MoveOutcome outcome = {};
     std::vector<Segment> segments = {};  ///< filled if the scratch memory records segments
     Vec3 surface_impulse{};              ///< N s, given to the particle by surfaces
-    bool is_out = false;                 ///< no longer moves in this step: its budget is spent, or it rests in a pit
-    int idle = 0;                        ///< consecutive pieces of contact without progress
+    bool is_out = false;                 ///< no longer moves in this step: its budget is exhausted, or it rests in a
+                                         ///< pit
+    int idle = 0;                        ///< number of consecutive pieces of contact without progress
 };
 
-/// Moves a system by the global variant, as the lectures teach it for the whole system's state vector. If any particle
-/// collides within the step, all go back to the earliest contact. The particles in contact at that time are resolved,
-/// and the whole system takes the rest of the step as a new step. Steps from `from` to `to`, in s. A particle whose
-/// bounce budget is spent no longer moves in the step; the rest of its time counts as unsimulated.
+/// Moves a system by the global variant, as the course notes describe it for the state vector of the whole system. If
+/// any particle collides within the step, all particles go back to the earliest contact. The contacts at that time are
+/// resolved, and the whole system takes the rest of the step as a new step. The step lasts from `from` to `to`, in s. A
+/// particle whose bounce budget is spent no longer moves in the step; the rest of its time counts as unsimulated.
 ///
-/// blocks: scratch memory of the blocks of `block_size` particles. One thread at a time uses each of them.
+/// blocks: scratch memory, one element per block of `block_size` particles. Each element is used by one thread at a
+/// time.
 void move_together(const ResponseRules& rules, std::span<SystemParticle> particles, double from, double to,
                    std::span<MoveScratch> blocks, std::size_t block_size);
 
@@ -69,15 +72,16 @@ void move_together(const ResponseRules& rules, std::span<SystemParticle> particl
 /// A bracket around the time of a collision, in s from the start of the piece.
 struct CollisionBracket {
     double free = 0.0;     ///< latest time tried without a collision
-    bool blocked = false;  ///< a surface blocks right after it; false: the whole piece is free
+    bool blocked = false;  ///< true: a surface blocks right after `free`; false: the whole piece is free
 };
 
-/// Returns the touch rule of this response. A surface is touched if it is nearer than the particle can move within the
-/// tolerance of a time of contact. The particle must not leave it faster than the resting speed. force_velocity: speed,
-/// in m/s, at which a kick may have brought a resting particle to its surface.
+/// Returns the touch rule of this response. A touched surface is nearer than the path of the particle within a few time
+/// tolerances. The particle must not leave it faster than the resting speed. force_velocity: speed, in m/s, with which
+/// a kick may have moved a resting particle to its surface.
 [[nodiscard]] TouchRule rollback_touch(const ResponseRules& rules, const ForceInput& state, double force_velocity);
 
-/// Moves one particle, see above. It moves in pieces; each is a flight or a contact interval.
+/// Moves one particle as described at the top of this file. It moves in pieces, each of which is a flight or a contact
+/// interval.
 class RollbackMover {
 public:
     /// Kind of a trial over a shorter time: a point of the same flight, or a separate step.
@@ -92,17 +96,17 @@ public:
     /// Begins the next piece, of at most `duration`, in s: a flight or a contact interval. Returns false if the state
     /// cannot be followed. The particle is then frozen.
     bool begin(double duration);
-    /// Returns how far the piece goes. A contact interval may end before the requested duration.
+    /// Returns for how long the piece is free. A contact interval may end before the requested duration.
     [[nodiscard]] CollisionBracket bracket();
-    /// Moves along the piece for a time, in s, that bracket() has found free.
+    /// Moves along the piece for a time, in s. bracket() must have found this time free.
     void advance(double elapsed);
-    /// Resolves the contact at the bracket's blocked end. The particle is at its free end.
+    /// Resolves the contact at the bracket's blocked end. The particle must be at the free end.
     void resolve();
     /// Returns true if the particle slides, rolls or rests.
     [[nodiscard]] bool in_contact() const { return !manifold_.empty(); }
     /// Lets the particle rest at its position for a duration, in s.
     void rest(double duration);
-    /// Keeps the contact for the next step.
+    /// Stores the contact for the next step.
     void keep_contact() { particle_.contact = manifold_.contact_state(); }
     [[nodiscard]] bool has_budget() const { return outcome_.meetings() < rules_.settings.bounce_budget; }
 
@@ -136,7 +140,7 @@ private:
     std::optional<Flight> flown_;  // the last flight of this step
     Vec3 kick_velocity_;           // m/s, velocity from kicks since the start of the last piece
     std::optional<ContactInterval> interval_;
-    bool turns_ = false;  // the interval is a chord of a surface that bends towards the particle
+    bool turns_ = false;  // true: the interval is a chord of a surface that curves towards the particle
     Vec3 pull_;           // acceleration by forces at the start of the interval
     std::vector<ContactSurface> hit_;
 };

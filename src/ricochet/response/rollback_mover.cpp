@@ -30,8 +30,8 @@ double time_on(const ContactSurface& support, const ContactInterval& interval, c
         {duration, speed > 0.0 ? longest / speed : duration, pull > 0.0 ? std::sqrt(2.0 * longest / pull) : duration});
 }
 
-/// Returns the displacement that lifts the end of a path along a curved surface to the distance of its start. Zero if
-/// the surface does not bend towards the particle.
+/// Returns the displacement that lifts the end of a path along a curved surface to the distance of its start. Returns
+/// zero if the surface does not curve towards the particle.
 Vec3 lift_to_surface(const ContactSurface& support, const Path& path, const CollisionWorld& world) {
     if (!is_finite(path.end)) return {};
     const CollisionWorld::Nearest here = world.nearest(support.surface, path.c[0]);
@@ -66,7 +66,8 @@ RollbackMover::RollbackMover(const ResponseRules& rules, MovingParticle& particl
     particle.contact = {};
 }
 
-/// Takes all the remaining time, goes back to the first contact, resolves it, and repeats that.
+/// Takes a step over all the remaining time, goes back to the first contact and resolves it. Repeats this until no time
+/// is left.
 void RollbackMover::run(double duration) {
     double remaining = duration;
     int idle = 0;
@@ -91,7 +92,8 @@ void RollbackMover::run(double duration) {
     keep_contact();
 }
 
-/// Rests for a duration, in s. A particle that circles into a pit would need infinitely many, ever shorter intervals.
+/// Rests for a duration, in s. Used for a particle that circles into a pit, because it would need infinitely many, ever
+/// shorter intervals.
 void RollbackMover::rest(double duration) {
     pull_ = is_kicked() ? Vec3{} : rules_.forces.acceleration(state_);
     manifold_.load(pull_);
@@ -194,8 +196,8 @@ void RollbackMover::follow_interval(double elapsed) {
     if (turns_) turn_along();
 }
 
-/// Resolves the collision. The particle bounces, or stays in contact if all rebounds are slow and something presses it
-/// on.
+/// Resolves the collision. The particle bounces, or stays in contact if all rebounds are slow and it is pressed onto a
+/// surface.
 void RollbackMover::resolve() {
     ++outcome_.bounces;
     outcome_.end = MoveEnd::moving;
@@ -216,18 +218,19 @@ void RollbackMover::resolve() {
     }
 }
 
-/// Moves a centre that lies exactly on a surface to the side of the normal. It has no side yet.
+/// Moves a centre that lies exactly on a surface to the side of the normal, because the centre has no side yet.
 void RollbackMover::leave_surface() {
     const Path path = line_path(state_.position, state_.velocity, flight_.path.duration);
     const ContactQueryResult found = find_first_contact(geometry_, {path, state_.radius}, scratch_.contacts);
     if (!step_off_surface(found.near, state_, scratch_)) ++outcome_.stayed;
 }
 
-/// Returns true if all surfaces can hold the particle, all rebounds are slower than the resting speed, and something
-/// presses it on.
+/// Returns true if all surfaces can hold the particle, all rebounds are slower than the resting speed, and it is
+/// pressed onto a surface.
 bool RollbackMover::will_stay() const {
     const Vec3 a = is_kicked() ? flown_->acceleration : rules_.forces.acceleration(state_);
-    // The surfaces already in contact cancel their part of the acceleration. The rest may press onto the next surface.
+    // The surfaces already in contact cancel the acceleration into them. The rest may press the particle onto the next
+    // surface.
     const Vec3 pull = project_off(a, manifold_.normals());
     bool pressed = false;
     for (const ContactSurface& hit : hit_) {
@@ -250,8 +253,8 @@ TouchRule RollbackMover::touch_rule() const {
     return rollback_touch(rules_, state_, force_velocity);
 }
 
-/// Plans an interval on the touched surfaces. There is none if nothing presses the particle on, or the surface ends
-/// here.
+/// Plans a contact interval on the touched surfaces. Plans none if nothing presses the particle onto them, or if the
+/// surface ends here.
 void RollbackMover::plan_contact(double duration) {
     const bool kicked = is_kicked();
     pull_ = kicked ? Vec3{} : rules_.forces.acceleration(state_);
@@ -267,7 +270,8 @@ void RollbackMover::plan_contact(double duration) {
     limit_interval();
 }
 
-/// Ends an interval at the end of its face. Drops one that is too short for the clock: it would be planned forever.
+/// Ends an interval at the end of its face. Discards an interval that is too short to advance the clock, because it
+/// would be planned again forever.
 void RollbackMover::limit_interval() {
     const ContactSurface support = manifold_[0];
     const double duration =
@@ -285,7 +289,7 @@ void RollbackMover::limit_interval() {
     const Vec3 lift = lift_to_surface(support, flight_.path, rules_.world);
     turns_ = lift != Vec3{};
     if (!turns_) return;
-    // Replaces the path by a chord, at whose end the velocity is turned along the surface.
+    // Replaces the path by a chord. The velocity is turned along the surface at the end of the chord.
     const Vec3 end = flight_.path.end + lift;
     flight_.path = parabola_path(state_.position, v + (end - flight_.path.end) / duration, a, duration);
     flight_.path.end = end;

@@ -30,7 +30,7 @@ enum class ResponseKind {
 /// Settings of the rollback response.
 struct RollbackSettings {
     double time_tolerance = 1e-9;  ///< s, > 0: width of the bracket of the time of contact
-    bool global = false;           ///< the whole system goes back to the earliest contact, as in the lectures
+    bool global = false;           ///< true: the whole system goes back to the earliest contact, as in the course notes
 };
 
 /// Settings of the project response.
@@ -41,7 +41,8 @@ struct ProjectSettings {
 /// Settings of the penalty response.
 struct PenaltySettings {
     /// Spring constant, in N/m, > 0. Without a value, each particle has the spring constant with which an undamped
-    /// contact lasts `contact_steps` sub-steps: m (pi / (contact_steps h))^2. Contacts then harden as steps shrink.
+    /// contact lasts `contact_steps` sub-steps: m (pi / (contact_steps h))^2. Contacts then become stiffer as steps
+    /// become shorter.
     std::optional<double> stiffness = std::nullopt;
     double contact_steps = 20.0;   ///< sub-steps, > 0; only without a stiffness
     std::uint32_t substeps = 10;   ///< equal parts of a step, >= 1
@@ -55,14 +56,14 @@ enum class PairMethod {
     contacts,   ///< all contacts of a step at once
 };
 
-/// Contact between two spheres.
+/// Parameters of a contact between two spheres.
 struct PairMaterial {
     double restitution = 1.0;       ///< separation speed over approach speed along the normal, 0..1
     double friction = 0.0;          ///< Coulomb coefficient, >= 0
     double rolling_friction = 0.0;  ///< resisting moment over reduced radius times normal impulse, >= 0
 };
 
-/// Contact between spheres of two materials, in either order, or of one material if both names are equal.
+/// Contact parameters for spheres of two materials, in either order, or of one material if both names are equal.
 struct MaterialPair {
     std::string first;
     std::string second;
@@ -82,7 +83,7 @@ struct PairContactSettings {
     PairMethod method = PairMethod::automatic;
     std::uint32_t impact_budget = 1000;       ///< impacts on other spheres per particle and step, >= 1
     std::vector<std::string> materials = {};  ///< names; none: all spheres have the same material
-    std::vector<MaterialPair> pairs = {};     ///< two of the materials each, at most once in either order
+    std::vector<MaterialPair> pairs = {};     ///< each pair of materials at most once, in either order
 };
 
 /// Motion of a particle that a flow carries into a wall, by the names in scenes.
@@ -96,8 +97,8 @@ struct ResponseSettings {
     double time_step = 1.0 / 60.0;  ///< s, > 0, of the run; single steps may be shorter
     Integrator integrator = IntegratorKind::ballistic;
     std::uint64_t seed = 0;
-    /// Rebounds slower than this, in m/s, >= 0, become resting or sliding contact if restitution < 1 and something
-    /// presses the particle on.
+    /// Rebounds slower than this, in m/s, >= 0, become resting or sliding contact if restitution < 1 and the particle
+    /// is pressed onto the surface.
     double resting_speed = 1e-3;
     std::uint32_t bounce_budget = 1000;  ///< impacts per particle and step, >= 1
     RollbackSettings rollback = {};

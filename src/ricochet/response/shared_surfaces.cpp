@@ -129,7 +129,7 @@ SharedSurfaces::Height SharedSurfaces::height_above(const SharedSurface& touched
     const bool is_extended = touched.surface.flat || then.is_shape(surface);
     CollisionWorld::Nearest nearest;
     nearest.distance = std::numeric_limits<double>::infinity();
-    if (deforms(touched)) {  // the particle may have gone on to another triangle of the contact
+    if (deforms(touched)) {  // the particle may have moved to another triangle of the contact
         for (const SurfaceId other : touched.others) {
             const CollisionWorld::Nearest there = then.nearest(other, p);
             if (!(there.distance < nearest.distance)) continue;
@@ -151,7 +151,7 @@ double SharedSurfaces::longest_interval() const {
     for (const SharedSurface& touched : all()) {
         rate = std::max(rate, length(touched.turning));
         if (touched.surface.flat) continue;
-        // A sphere turns about an edge, whatever the triangle's size.
+        // The rate at which a sphere turns about an edge does not depend on the triangle's size.
         const SurfaceId surface = touched.surface.surface;
         const double size = deforms(touched) ? 0.0 : bodies().world(touched.body).size_of(surface);
         rate = std::max(rate, length(state.velocity - touched.velocity) / std::max(state.radius, size));
@@ -188,7 +188,7 @@ std::vector<SurfaceId> SharedSurfaces::supporting(const Path& path) const {
     return list;
 }
 
-/// Returns true for one of the surfaces, and for a surface that continues one in its plane on the same body.
+/// Returns true for one of the surfaces, and for a surface of the same body that continues the plane of one.
 bool SharedSurfaces::continues_one(const ContactSurface& surface) const {
     return std::any_of(all().begin(), all().end(), [&](const SharedSurface& touched) {
         if (touched.surface.surface == surface.surface) return true;

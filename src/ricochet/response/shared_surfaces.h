@@ -14,24 +14,24 @@
 
 namespace ricochet {
 
-/// A surface that touches the particle, in the world.
+/// A surface that touches the particle, in world coordinates.
 struct SharedSurface {
     ContactSurface surface;
     BodyId body = kWorldBody;
     Vec3 velocity;  ///< m/s, of the surface and its material at the contact
-    Vec3 turning;   ///< rad/s, of the body
-    /// Other surfaces at the same contact: of a deforming mesh see DeformedContact::all; at the rim of a triangle, the
-    /// triangles with the same rim.
+    Vec3 turning;   ///< rad/s, angular velocity of the body
+    /// Other surfaces at the same contact. For a deforming mesh, see DeformedContact::all. At the rim of a triangle,
+    /// these are the triangles with the same rim.
     std::vector<SurfaceId> others;
 };
 
-/// The surfaces that touch a particle, at most kMostSupports. The particle must be in the world.
+/// The surfaces that touch a particle, at most kMostSupports. The particle's state must be in world coordinates.
 class SharedSurfaces {
 public:
-    /// The step must outlive it.
+    /// The step must outlive the object.
     explicit SharedSurfaces(const ParticleStep& step) : step_(step) {}
 
-    /// Finds the surfaces that touch the particle now and that it does not leave.
+    /// Finds the surfaces that touch the particle and from which it does not separate.
     void gather();
     /// Keeps the surfaces for whose index keep(k) is true.
     template <class Keep>
@@ -55,27 +55,28 @@ public:
     /// Returns the contact state for the next step.
     [[nodiscard]] ContactState contact_state() const;
 
-    /// Returns the surface as a constraint, seen from a frame that moves with `shift`, in m/s. The gap to a rigid
-    /// surface changes by n . (a - a_s) + 2 (omega x n) . (v - w), and by its curvature. a_s is the acceleration of its
-    /// point at the contact.
+    /// Returns the surface as a constraint in a frame that moves with the velocity `shift`, in m/s. The second
+    /// derivative of the gap to a rigid surface is n . (a - a_s) + 2 (omega x n) . (v - w), plus a curvature term. w
+    /// and a_s are the velocity and the acceleration of the surface point at the contact.
     [[nodiscard]] SupportSurface constraint(const SharedSurface& touched, const Vec3& shift) const;
 
     /// Position of a particle's centre relative to a surface.
     struct Height {
         Vec3 normal;
-        double above = 0.0;   ///< m, of the centre
-        double offset = 0.0;  ///< m, the contact offset there
+        double above = 0.0;   ///< m, height of the centre
+        double offset = 0.0;  ///< m, twice the contact offset there
     };
     [[nodiscard]] Height height_above(const SharedSurface& touched, const Vec3& position, double time) const;
 
-    /// Returns the time, in s, in which no surface turns much, and none bends much below the particle.
+    /// Returns a time, in s, in which no surface rotates much, and no normal below the particle turns much because of
+    /// curvature.
     [[nodiscard]] double longest_interval() const;
-    /// Returns the time, in s, at which a body gets another velocity within the step, if one does.
+    /// Returns the time, in s, of the next velocity jump of a touched body within the step, if there is one.
     [[nodiscard]] std::optional<double> next_jump() const;
-    /// Returns the surfaces along which a path leads, in ascending order. At a rim, others that end there take part
-    /// where the path ends off them.
+    /// Returns the surfaces along which a path leads, in ascending order. At a rim, other triangles with the same rim
+    /// are included if the sphere does not overlap them at the end of the path.
     [[nodiscard]] std::vector<SurfaceId> supporting(const Path& path) const;
-    /// Adds the surfaces to an impact on another one. They are marked as supports.
+    /// Adds the surfaces, marked as supports, to an impact on another surface.
     void join_impact(Contact& contact) const;
 
     [[nodiscard]] const DeformingColliders& deforming() const { return bodies().deforming(); }

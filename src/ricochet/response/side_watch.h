@@ -11,15 +11,15 @@
 
 namespace ricochet {
 
-/// A collider near a particle, from the side that the particle belongs to.
+/// A collider near a particle, described relative to the particle's own side.
 struct Proximity {
     std::uint32_t collider = 0;
     SurfaceId surface = 0;
     Vec3 point;             ///< the collider's point nearest to the centre
     Vec3 normal;            ///< unit, from that point to the particle's own side
     double distance = 0.0;  ///< m, from the sphere to the surface; negative: the particle penetrates
-    bool behind = false;    ///< the centre itself is on the wrong side
-    int side = 0;           ///< present side of the centre; 0 if it has no meaning
+    bool behind = false;    ///< true: the centre itself is on the wrong side
+    int side = 0;           ///< present side of the centre; 0 if it is not defined
 };
 
 /// Scratch lists of one thread, kept between particles so that their loop allocates no memory.
@@ -29,8 +29,8 @@ struct SideScratch {
     std::vector<ContactSurface> contacts;
 };
 
-/// Sets the sides of a new particle. It has none yet: when it reaches a surface, its side is the one that it comes
-/// from. But a particle exactly on a surface gets the side of the surface's normal.
+/// Sets the sides of a new particle to unknown. Its side of a surface becomes known when it first reaches the surface.
+/// A particle exactly on a surface gets the side of the surface's normal.
 void set_first_sides(const SignedDistance& distance, const Vec3& position, std::span<SideMemory> sides);
 
 /// Sets the sides of a child from its parent's sides. The child is behind a surface if the surface lies between the
@@ -38,8 +38,9 @@ void set_first_sides(const SignedDistance& distance, const Vec3& position, std::
 void settle_child_sides(const SignedDistance& distance, const ChildStart& start, std::span<SideMemory> sides);
 
 /// Keeps the sides of one particle. A particle gets behind a surface if its path crosses the collider an odd number of
-/// times. After an even number of crossings, it may have gone through an edge, or right through. It is then behind if
-/// its side differs from the one at the start. A particle stays behind until it is found on its own side again.
+/// times. After an even number of crossings, it may have passed through an edge, or through the whole collider. It is
+/// then behind if its side differs from the one at the start. A particle stays behind until it is found on its own side
+/// again.
 class SideWatch {
 public:
     SideWatch(const SignedDistance& distance, std::span<SideMemory> sides, double radius, SideScratch& lists)
@@ -49,9 +50,9 @@ public:
     /// of the particle when its sides were settled last.
     void find_near(const Vec3& position, const Vec3& from, double margin, std::vector<Proximity>& out);
     /// Queries all surfaces within a distance, in m, that the particle may cover next. find_near() makes no query while
-    /// the particle stays in the part without surfaces.
+    /// the particle stays inside the ball without surfaces that this query has found.
     void survey(const Vec3& position, double reach);
-    /// Updates the sides by the findings at the particle's new position.
+    /// Updates the sides from the results of find_near() at the particle's new position.
     void settle(std::span<const Proximity> seen);
     /// Returns true if the particle was in contact when its sides were settled last.
     [[nodiscard]] bool in_contact() const;

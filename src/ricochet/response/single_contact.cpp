@@ -37,8 +37,8 @@ MotionVector change_by(const SingleContactForces& forces, const CoulombContact& 
     return sum;
 }
 
-/// Returns the friction that removes the slip which the forces leave, at most `most`; against the heading of a slip
-/// that moves. scale: of the rates.
+/// Returns the friction that removes the slip left by the forces, limited to `most`. For a moving slip, returns
+/// friction of size `most` against its heading. scale: scale of the rates.
 std::array<double, 2> wanted_friction(const CoulombContact& contact, const CoulombResistance& slip,
                                       const SingleContactForces& forces, double scale, double most) {
     if (slip.is_moving) return {most * -slip.heading[0], most * -slip.heading[1]};
@@ -77,7 +77,7 @@ std::optional<SingleContactForces> solve_single_contact(const CoulombContact& co
         for (std::size_t d = 0; d < 2; ++d) residual = std::max(residual, std::fabs(forces.tangential[d] - wanted[d]));
     }
     if (!(residual <= kCoulombResidual)) return std::nullopt;
-    // The heading is a unit vector up to rounding.
+    // Limits the friction again, because the heading is a unit vector only up to rounding.
     const auto& [first, second] = forces.tangential;
     const double size = std::sqrt(first * first + second * second);
     const double part = size > most ? most / size : 1.0;

@@ -20,14 +20,14 @@ struct SingleContactForces {
 };
 
 /// Solves a contact without resistance (`slip` is null), or with friction. The normal force cancels the approach.
-/// Friction removes the slip up to its bound, or acts with its bound against the heading of a slip that moves.
+/// Friction removes the slip as far as its bound allows. For a moving slip, it acts with its bound against the heading.
 /// `friction` is a factor on the bound, 0..1. Returns std::nullopt if the directions depend on each other, or rounding
 /// leaves more than kCoulombResidual.
 [[nodiscard]] std::optional<SingleContactForces> solve_single_contact(const CoulombContact& contact,
                                                                       const CoulombResistance* slip, double friction);
 
 /// Returns the motion nearest to the given one that is along a surface of unit normal n: along_surfaces() for one
-/// surface on which nothing sticks. The velocity must not be zero. `braked_from` as there, in m/s.
+/// surface on which nothing sticks. The velocity must not be zero. `braked_from`: as in along_surfaces(), in m/s.
 [[nodiscard]] Motion along_single_surface(const Motion& motion, double radius, const Vec3& n, double braked_from);
 
 }  // namespace ricochet

@@ -16,7 +16,7 @@ namespace ricochet {
 [[nodiscard]] SupportedAcceleration acceleration_in_contact(const ResponseRules& rules, const MovingParticle& particle,
                                                             const Vec3& pull, const TouchRule& rule);
 
-/// As above, with the standard rule for touching surfaces, TouchRule::at().
+/// Does the same with the standard rule for touching surfaces, TouchRule::at().
 [[nodiscard]] SupportedAcceleration acceleration_in_contact(const ResponseRules& rules, const MovingParticle& particle,
                                                             const Vec3& pull);
 

@@ -30,7 +30,8 @@ ImpactSurface SurfaceKinematics::landing_on(const ContactSurface& surface) const
             surface_normal_speed(surface)};
 }
 
-/// Returns the velocity of the contact point of a body, and of its material there.
+/// Returns the velocity of a body's point at the contact, plus the velocity of the surface material relative to the
+/// body.
 Vec3 SurfaceKinematics::carried_velocity_of(const ContactSurface& surface, const Vec3& center) const {
     const BodyId body = rules_.bodies.body_of(surface.surface);
     const SurfacesInTime now(rules_.bodies, reference_.body(), particle_.state.time);
@@ -59,8 +60,8 @@ Vec3 SurfaceKinematics::carried_angular_velocity_of(SurfaceId surface) const {
     return of_material + now.angular_velocity_of(surface, {center, 0.0, world});
 }
 
-/// Returns the velocity of a body's point beside the body's path, in the world. It has two causes: impulses that the
-/// particle has given to the body, and an angular velocity beside the path.
+/// Returns the velocity of a body's point relative to the body's planned path, in world coordinates. It has two causes:
+/// impulses that the particle has given to the body, and an angular velocity in addition to that of the path.
 Vec3 SurfaceKinematics::velocity_beside_path(BodyId body, const Vec3& point) const {
     const double time = particle_.state.time;
     const Vec3 turning = rules_.bodies.turning_beside_path(body, time);

@@ -13,13 +13,14 @@
 namespace ricochet {
 
 /// Velocities of surfaces at a particle, in the particle's reference frame. A surface of the scene at rest moves only
-/// if its material does. Velocities are in m/s, and positive along the normal, which points towards the particle.
+/// if its material does. Velocities are in m/s. Normal speeds are positive along the normal, which points towards the
+/// particle.
 ///
 /// A dynamic body keeps its planned path until the move ends. Impulses from this particle change its velocity for this
-/// particle at once. The difference is the motion beside the path.
+/// particle at once. The difference from the planned motion is called the motion beside the path.
 class SurfaceKinematics {
 public:
-    /// All must outlive it.
+    /// All arguments must outlive the object.
     SurfaceKinematics(const ResponseRules& rules, const MovingParticle& particle, const ReferenceFrame& reference)
         : rules_(rules), particle_(particle), reference_(reference) {}
 
@@ -34,7 +35,8 @@ public:
         return rules_.bodies.is_dynamic(rules_.bodies.body_of(surface));
     }
 
-    /// Returns the velocity of the surface's material at the contact, as far as it grips. See SurfaceMotion.
+    /// Returns the velocity of the surface's material at the contact. If the surface does not grip, this is the
+    /// velocity of its body. See SurfaceMotion.
     [[nodiscard]] Vec3 velocity_of(const ContactSurface& surface) const {
         return velocity_of(surface, particle_.state.position);
     }
@@ -45,7 +47,7 @@ public:
         if (!material.drives()) return {};
         return material.motion.at(center - particle_.state.radius * surface.normal, surface.normal);
     }
-    /// Returns the angular velocity of that material, in rad/s.
+    /// Returns the angular velocity of the surface's material, in rad/s.
     [[nodiscard]] Vec3 angular_velocity_of(SurfaceId surface) const {
         if (is_carried(surface)) return carried_angular_velocity_of(surface);
         const Material& material = material_of(surface);
@@ -60,7 +62,7 @@ public:
         return dot(particle_.state.velocity, surface.normal) - surface_normal_speed(surface);
     }
     /// Returns true if the particle approaches a surface that does not support it yet. On a supporting surface the
-    /// normal speed is rounding of either sign, so the contact state decides.
+    /// normal speed is a rounding error of either sign, so the contact state decides.
     [[nodiscard]] bool is_approached(const ContactSurface& surface) const {
         return !surface.is_support && separation_speed(surface) < 0.0;
     }
@@ -73,13 +75,14 @@ public:
 
     // Dynamic bodies.
 
-    /// Notes that the particle has given a body a wrench about the centre of its mobility.
+    /// Records that the particle has given a body a wrench about the centre of its mobility.
     void note_given(BodyId body, const Wrench& wrench) { given_.push_back({body, wrench}); }
     /// Returns the normal speed of a dynamic body's surface relative to its planned path; 0 for other surfaces.
     [[nodiscard]] double advance_beside_path(const ContactSurface& surface) const;
-    /// Returns the speed of approach to a surface whose body continues along its path. 0 for other surfaces.
+    /// Returns the speed of approach to a dynamic body's surface if the body continues on its planned path; 0 for other
+    /// surfaces.
     [[nodiscard]] double approach_of_path(const ContactSurface& surface) const;
-    /// Returns the largest such speed, >= 0.
+    /// Returns the largest approach_of_path() of the surfaces, >= 0.
     [[nodiscard]] double approach_of_paths(std::span<const ContactSurface> surfaces) const;
     /// Returns true if the particle still approaches the position of a surface whose body it has pushed away.
     [[nodiscard]] bool approaches_pushed_body(std::span<const ContactSurface> surfaces) const;

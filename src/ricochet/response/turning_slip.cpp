@@ -8,8 +8,9 @@
 namespace ricochet {
 namespace {
 
-/// Steps of the Runge-Kutta method in an interval. Reason: two take 1e-6 from the speed of a slide that turns by a
-/// right angle in ten intervals, one takes 2e-5. Local: its cost is small next to that of the interval's query.
+/// Number of Runge-Kutta steps in an interval. Reason: for a slide that turns by a right angle in ten intervals, two
+/// steps lose 1e-6 of the speed, and one step loses 2e-5. Local, because the cost is small compared with that of the
+/// interval's query.
 constexpr int kParts = 2;
 
 }  // namespace
@@ -25,8 +26,8 @@ TurningSlip::TurningSlip(const Motion& motion, double radius, const SupportSurfa
       slip_rate_(radius > 0.0 ? kSlipAcceleration : 1.0),
       rounding_(kSlowSlip * speed_scale(motion, radius, {&surface, 1})) {
     along_ = forces + pressing_ * normal_;
-    // Along the surface to the rounding of their own size: friction has the direction of the slip, however slow that
-    // is.
+    // Projects each vector twice, so that the rounding error of the projection is relative to the vector's own size.
+    // Reason: friction has the direction of the slip even if the slip is very slow.
     for (Vec3* const v : {&along_, &slip_}) {
         for (int pass = 0; pass < 2; ++pass) *v -= dot(*v, normal_) * normal_;
     }

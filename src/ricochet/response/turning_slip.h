@@ -18,26 +18,27 @@ public:
         Vec3 displacement;  ///< m
         Vec3 velocity;      ///< m/s
         Vec3 acceleration;  ///< mean since the start, m/s^2
-        Vec3 friction;      ///< mean since the start, force over the mass, m/s^2
+        Vec3 friction;      ///< mean since the start, force per unit mass, m/s^2
     };
 
-    /// motion: along the surface, which does not turn. forces: over the mass, in m/s^2. pressure: a factor on friction.
+    /// motion: motion along the surface, which does not rotate. forces: per unit mass, in m/s^2. pressure: factor on
+    /// friction.
     TurningSlip(const Motion& motion, double radius, const SupportSurface& surface, const Vec3& forces,
                 double pressure);
 
-    /// Returns the time, in s, at most `duration`, in which the method is stable, and the slip changes by at most
-    /// kMaxArcAngle of its size or hardly turns. Returns 0 if the motion needs another description: no friction acts,
-    /// the slip does not turn, it soon ends without a turn, or it is only rounding.
+    /// Returns a time, in s, of at most `duration`, for which the method is suitable. In this time it is stable, and
+    /// the slip changes by at most kMaxArcAngle of its size or hardly turns. Returns 0 if no friction acts or the slip
+    /// does not turn. Also returns 0 if the slip soon ends without a turn, or is only a rounding error.
     [[nodiscard]] double longest(double duration) const;
     /// Returns the state after t, in s.
     [[nodiscard]] State at(double t) const;
-    /// Returns the change of a sphere's spin by a friction, in rad/s^2.
+    /// Returns the change of a sphere's spin by a friction force per unit mass, in rad/s^2.
     [[nodiscard]] Vec3 spin_acceleration(const Vec3& friction) const {
         return spin_change_by(friction, normal_, radius_);
     }
     /// Returns the motion at the start.
     [[nodiscard]] const Motion& start() const { return start_; }
-    /// Returns the force of the surface over the mass at the start, in m/s^2.
+    /// Returns the force of the surface per unit mass at the start, in m/s^2.
     [[nodiscard]] Vec3 reaction() const { return pressing_ * normal_ + friction_on(slip_); }
 
 private:
@@ -50,8 +51,8 @@ private:
     double friction_;   // m/s^2, size
     Vec3 along_;        // m/s^2, acceleration without friction
     Vec3 slip_;         // m/s, at the start
-    double slip_rate_;  // change of the slip over the friction that causes it
-    double rounding_;   // m/s, of the slip
+    double slip_rate_;  // change of the slip divided by the friction that causes it
+    double rounding_;   // m/s, rounding error of the slip
 };
 
 }  // namespace ricochet

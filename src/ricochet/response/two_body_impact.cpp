@@ -7,8 +7,8 @@
 namespace ricochet {
 namespace {
 
-/// Halvings in the search for the friction that adds no energy, to the last bit. Local: it ends below the rounding of
-/// the result.
+/// Number of halvings in the bisection for the friction that adds no energy; 53 find it to the last bit. Local, because
+/// the bisection ends below the rounding of its result.
 constexpr int kHalvings = 53;
 
 /// Response of both sides at the contact: of the particle to an impulse, in N s, and of the body to its opposite.
@@ -49,14 +49,15 @@ public:
         // Friction depends on the slip of the sphere's surface.
         slip_ = slip_velocity({relative, before.spin}, state.radius, normal_);
         const double speeds = length(before.velocity) + length(surface.velocity) + state.radius * length(before.spin);
-        if (length(slip_) <= kSlipRounding * speeds) slip_ = {};  // rounding has no direction
+        if (length(slip_) <= kSlipRounding * speeds) slip_ = {};  // a rounding error has no direction
     }
 
     [[nodiscard]] double approach() const { return approach_; }
 
-    /// Returns the impulse on the particle, in N s. Friction opposes the slip before the impact for as long as there is
-    /// any. It sticks from then on, or opposes the slip that the rest of the impulse would leave without it. Source: E.
-    /// J. Routh, "The Advanced Part of a Treatise on the Dynamics of a System of Rigid Bodies", chapter on impulses.
+    /// Returns the impulse on the particle, in N s. Friction opposes the initial slip until it has stopped. From then
+    /// on friction prevents slip, or opposes the slip that the rest of the impulse would cause without friction.
+    /// Source: E. J. Routh, "The Advanced Part of a Treatise on the Dynamics of a System of Rigid Bodies", chapter on
+    /// impulses.
     [[nodiscard]] Vec3 impulse() const {
         if (friction_ == 0.0) return impulse_with({}, {});
         const Vec3 stop = contact_.impulse_for(wanted_ * normal_ - slip_);
@@ -73,7 +74,7 @@ public:
     }
 
 private:
-    /// Returns the whole impulse, in N s. Its part `given` has stopped the slip before the impact. stop: the whole
+    /// Returns the whole impulse, in N s. Its part `given` has already stopped the initial slip. stop: the whole
     /// impulse that leaves no slip.
     [[nodiscard]] Vec3 impulse_after(const Vec3& given, const Vec3& stop) const {
         if (is_in_cone(stop - given)) {
@@ -90,7 +91,7 @@ private:
         if (!(speed > 0.0)) return smooth;
         const Vec3 against = (-1.0 / speed) * along;
         return most_of(given, against, friction_, [&](const Vec3& impulse) {
-            return dot(slip_ + contact_.change(impulse), against) <= 0.0;  // it does not turn the slip around
+            return dot(slip_ + contact_.change(impulse), against) <= 0.0;  // it does not reverse the slip
         });
     }
 
@@ -99,16 +100,16 @@ private:
         return pressing > 0.0 && length(impulse - pressing * normal_) <= friction_ * pressing;
     }
 
-    /// Returns the impulse, in N s, that reverses the approach: the part `given`, and a rest with friction as a
-    /// multiple of its normal component.
+    /// Returns the impulse, in N s, that reverses the approach. It consists of `given` and a remainder in the direction
+    /// of the normal plus `friction`.
     [[nodiscard]] Vec3 impulse_with(const Vec3& given, const Vec3& friction) const {
         const Vec3 direction = normal_ + friction;
         const double left = wanted_ - dot(normal_, contact_.change(given));
         return given + (left / dot(normal_, contact_.change(direction))) * direction;
     }
 
-    /// Returns the impulse with the largest friction along a vector that adds no energy. `most` limits friction, as a
-    /// multiple of the normal component.
+    /// Returns the impulse with the largest friction in the direction `along` that adds no energy and is allowed.
+    /// `most` is the limit of friction, as a multiple of the normal component.
     template <class Is>
     [[nodiscard]] Vec3 most_of(const Vec3& given, const Vec3& along, double most, const Is& is_allowed) const {
         const auto is_sound = [&](double friction) {
@@ -119,7 +120,8 @@ private:
         return impulse_with(given, friction * along);
     }
 
-    /// Returns true if an impulse adds kinetic energy beyond rounding. Sticking without losses adds exactly none.
+    /// Returns true if an impulse adds kinetic energy beyond rounding. The exact energy change is zero if slip stops
+    /// without losses.
     [[nodiscard]] bool gains(const Vec3& by) const {
         const double taken = 0.5 * dot(by, contact_.change(by));
         return dot(by, slip_ - approach_ * normal_) + taken > kEnergyRounding * taken;
@@ -129,7 +131,7 @@ private:
     Vec3 normal_;
     double friction_;
     double approach_ = 0.0;  // m/s
-    double wanted_ = 0.0;    // m/s, change along the normal
+    double wanted_ = 0.0;    // m/s, required change along the normal
     Vec3 slip_;              // m/s
 };
 

@@ -4,7 +4,7 @@
 
 namespace ricochet {
 
-// The smallest number represents its set, so one pass in ascending order finds all roots.
+// The smallest number represents each set, so one pass in ascending order finds all roots.
 void ConnectedImpacts::assign(std::span<const SolverState> states, std::span<const ContactConstraint> rows) {
     DisjointSets sets(states.size());
     fixed_.resize(states.size());

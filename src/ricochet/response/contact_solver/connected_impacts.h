@@ -1,6 +1,6 @@
 /// \file
-/// Private to the contact solver: groups of contacts that form one connected impact. Each has one restitution and one
-/// energy balance.
+/// Private to the contact solver: groups of contacts that form one connected impact. Each group has one restitution and
+/// one energy balance.
 #pragma once
 
 #include <cstddef>
@@ -12,11 +12,11 @@
 
 namespace ricochet {
 
-/// Sets of bodies that contacts with an impulse join.
+/// Sets of bodies that are joined by contacts with an impulse.
 class ConnectedImpacts {
 public:
-    /// Joins the bodies of every row with a normal impulse. `states` holds all bodies and walls. Fixed bodies
-    /// and walls join nothing.
+    /// Joins the bodies of every row with a normal impulse. `states` contains all bodies and walls. Fixed bodies and
+    /// walls join nothing.
     void assign(std::span<const SolverState> states, std::span<const ContactConstraint> rows);
 
     /// Returns the number of a row's impact, which is less than size().

@@ -65,13 +65,13 @@ static_assert(sizeof(ContactConstraint) == 16 * sizeof(double) &&
               offsetof(ContactConstraint, impulse) == 8 * sizeof(double) &&
               offsetof(ContactConstraint, direction) == 12 * sizeof(double));
 
-/// Returns the address of the four doubles of an object that begin at number 4 * part.
+/// Returns the address of four consecutive doubles of an object. The first is double number 4 * part.
 template <class T>
 [[nodiscard]] RICOCHET_INLINE double* part_of(T* one, std::size_t part) {
     return reinterpret_cast<double*>(one) + part * kQuad;
 }
 
-/// Loads such a part of four objects and transposes it: result k holds double k of all four.
+/// Loads one part of each of four objects, see part_of(), and transposes them: result k contains double k of all four.
 template <class T>
 [[nodiscard]] RICOCHET_INLINE std::array<Quad, kQuad> load_part(const FourOf<T>& from, std::size_t part) {
     std::array<Quad, kQuad> rows{load_quad(part_of(from[0], part)), load_quad(part_of(from[1], part)),

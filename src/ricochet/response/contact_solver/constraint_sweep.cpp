@@ -26,7 +26,7 @@ RICOCHET_INLINE void relax_one(const SweptRows& swept, double factor, ContactCon
 
 #if defined(__x86_64__)
 
-/// Number of rows that are searched for work together. Reason: they and their bodies stay in the first-level cache.
+/// Number of rows per search for rows that are not idle. Reason: these rows and their bodies stay in the L1 cache.
 constexpr std::size_t kLookAhead = 64;
 
 /// Four rows and the bodies of each.
@@ -36,7 +36,7 @@ struct QuadBodies {
 };
 
 /// Sweep over four rows at once. It first finds the rows that are not idle, which differ from sweep to sweep, and then
-/// solves four of them at once. Reason: of four neighbouring rows some are nearly always idle.
+/// solves four of them at once. Reason: some of four neighbouring rows are nearly always idle.
 class QuadSweep {
 public:
     RICOCHET_INLINE QuadSweep(const SweptRows& swept, double factor) : swept_(swept), factor_(factor) {}
@@ -68,7 +68,7 @@ private:
         return places;
     }
 
-    /// Appends the rows that are not idle, without branches, because they would be mispredicted.
+    /// Appends the rows that are not idle, without branches, because branches would be mispredicted.
     RICOCHET_INLINE void find_work(std::size_t begin, std::size_t end) {
         for (; begin + kQuad <= end; begin += kQuad) {
             ContactConstraint* row = &swept_.rows[begin];
@@ -126,14 +126,14 @@ private:
     return QuadSweep(swept, factor).run();
 }
 
-/// Uses twice as many registers of the same size, which is a tenth faster.
+/// Uses twice as many registers of the same size, which makes it a tenth faster.
 [[gnu::target("avx512vl")]] SweepChange sweep_avx512(const SweptRows& swept, double factor) {
     return QuadSweep(swept, factor).run();
 }
 
 [[gnu::target("avx2")]] void go_on_avx2(std::span<SolverState> states, std::span<SolverState> last, double factor) {
     for (std::size_t i = 0; i < states.size(); ++i) {
-        for (std::size_t part = 0; part < 2; ++part) {  // mobilities are constant, so this step leaves them unchanged
+        for (std::size_t part = 0; part < 2; ++part) {  // inverse masses are constant, so this step keeps them
             const Quad now = load_quad(part_of(&states[i], part));
             const Quad before = load_quad(part_of(&last[i], part));
             store(now + factor * (now - before), part_of(&states[i], part));

@@ -15,7 +15,7 @@ struct SweptRows {
     std::span<SolverState> states;
 };
 
-/// Instruction set of a sweep. All give the same bits.
+/// Instruction set of a sweep. All give bit-identical results.
 enum class SweepVariant {
     one_by_one,
     avx2,   ///< four rows at once; no two rows may share a body that is not fixed
@@ -28,8 +28,8 @@ enum class SweepVariant {
 /// Solves each row that is not idle, after a momentum step of `factor` times its last change.
 [[nodiscard]] SweepChange sweep_rows(const SweptRows& swept, double factor, SweepVariant variant);
 
-/// Applies the momentum step to bodies: `factor` times their change since `last`. Then `last` holds their states before
-/// this step.
+/// Applies the momentum step to bodies: `factor` times their change since `last`. Afterwards `last` contains their
+/// states before this step.
 void go_on(std::span<SolverState> states, std::span<SolverState> last, double factor, SweepVariant variant);
 
 }  // namespace ricochet

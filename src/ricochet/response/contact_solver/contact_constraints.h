@@ -1,9 +1,9 @@
 /// \file
 /// Private to the contact solvers: one contact constraint ("row"), solved while all others keep their impulses. The
-/// templates also process four rows at once (constraint_quads.h), with the same bits.
+/// templates also process four rows at once (constraint_quads.h), with bit-identical results.
 ///
-/// Lever arms are parallel to normals. A contact's normal impulse therefore changes only its approach, and its friction
-/// only its slip, so both have closed forms. Spins are stored as surface speeds: radius times spin.
+/// Lever arms are parallel to normals. A contact's normal impulse therefore changes only its approach speed, and its
+/// friction only its slip. Both impulses have closed forms. Spins are stored as surface speeds: radius times spin.
 #pragma once
 
 #include <algorithm>
@@ -66,20 +66,20 @@ struct SolverLimits {
     double slip = 0.0;  ///< also for rolling
 };
 
-/// Change of one row, or of each of four, in a sweep. See SweepChange.
+/// Change of one row, or of each of four rows, in a sweep. See SweepChange.
 template <class Number>
 struct RowChange {
-    Number normal_work{};       ///< by the normal impulse, in J
-    Number tangential_work{};   ///< by friction, in J
-    Number approach_squared{};  ///< times `strictness`, in m^2/s^2
+    Number normal_work{};       ///< change of the normal impulse times the velocity change that it causes, in J
+    Number tangential_work{};   ///< the same for friction, in J
+    Number approach_squared{};  ///< squared change of the approach speed times `strictness`, in m^2/s^2
     Number slip_squared{};
 };
 
 /// Change of the network in a sweep.
 struct SweepChange {
     double squared = 0.0;           ///< sum of changes of impulses times the resulting changes of velocity, in J
-    double approach_squared = 0.0;  ///< largest change of an approach, squared and times `strictness`, in m^2/s^2
-    double slip_squared = 0.0;      ///< largest change of a slip, likewise
+    double approach_squared = 0.0;  ///< largest squared change of an approach speed, times `strictness`, in m^2/s^2
+    double slip_squared = 0.0;      ///< largest squared change of a slip, likewise
 
     void add(const SweepChange& other) {
         squared += other.squared;

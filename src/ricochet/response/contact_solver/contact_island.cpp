@@ -10,28 +10,28 @@
 namespace ricochet {
 namespace {
 
-/// Returns the largest speed, in m/s, that separates an overlap, in m. The part from forces is at most the speed of a
-/// free fall through the overlap, because sinking gave no more energy. The approach speed is added. Otherwise a small
-/// overlap would throw heavy spheres, and shorter steps would throw them farther. `pull` is in m/s^2, `approach` in
-/// m/s.
+/// Returns the largest speed, in m/s, at which an overlap, in m, may be separated. The part from forces is at most the
+/// speed of a free fall through the overlap, because sinking in released no more energy. The approach speed is added.
+/// Without this limit, a small overlap would eject heavy spheres, and shorter steps would eject them faster. `pull` is
+/// in m/s^2, `approach` in m/s.
 double most_parting(double pull, double radius, double overlap, double approach) {
     if (!(overlap > 0.0)) return std::max(0.0, approach);
     const double fall = std::min(kPartingFall * kPartingFall * radius, 2.0 * overlap);
     return std::sqrt(pull * fall) + std::max(0.0, approach);
 }
 
-/// Returns the search distance for contacts, in m, of a sphere whose path is `travel` long, in m.
+/// Returns the search distance for contacts, in m, of a sphere whose path has the length `travel`, in m.
 double reach_of(double travel, double radius) { return 2.0 * travel + kNetworkReach * radius; }
 
 /// Number of members or contacts between the prefetch of their data and its use.
 constexpr std::size_t kPrefetchDistance = 8;
 
-/// Factor on the reach of a pair that covers rounding. Beyond it there is certainly no contact. Local: it covers
-/// rounding, and the exact reach decides.
+/// Factor on the reach of a pair that covers rounding errors. A pair farther apart certainly has no contact. Local,
+/// because the exact reach decides about nearer pairs.
 constexpr double kOutOfReach = 1.0 + 1e-9;
 
-/// Fraction of a search distance without walls that counts as clear. The rest covers rounding. Local: it covers
-/// rounding, and only the cost depends on it.
+/// Fraction of the search distance that counts as clear if no wall was found within that distance. The rest covers
+/// rounding errors. Local, because only the cost depends on it.
 constexpr double kClear = 0.9;
 
 }  // namespace
@@ -58,7 +58,7 @@ SolverReport ContactIsland::plan(std::span<const ContactIslandMember> members, s
 }
 
 /// Sets the duration as a fraction of the time step. A time step removes a fraction of an overlap. A substep removes
-/// correspondingly less, because otherwise the spheres would be thrown.
+/// correspondingly less, because otherwise the spheres would be ejected.
 void ContactIsland::set_part(bool is_coupled) {
     part_ = is_coupled ? std::min(1.0, duration_ / rules_.settings.time_step) : 1.0;
 }
@@ -115,7 +115,7 @@ void ContactIsland::add_pair(std::uint32_t first, std::uint32_t second) {
     const double farthest = kOutOfReach * (a.radius + b.radius + a.reach + b.reach);
     if (squared > farthest * farthest) return;
     const double distance = std::sqrt(squared);
-    if (!(distance > 0.0)) return;  // no direction separates them
+    if (!(distance > 0.0)) return;  // coincident centres define no normal
     double gap = parted(distance - a.radius - b.radius);
     // Overlaps with sleeping spheres are ignored, because a sphere between two of them may have no room to separate.
     if (a.is_asleep || b.is_asleep) gap = std::max(0.0, gap);
@@ -213,7 +213,7 @@ void ContactIsland::warm_start(std::size_t at) {
 }
 
 /// Returns the restitution, or 0 if the rebound would be slower than the resting speed. `approach` is the speed at the
-/// start of the step, in m/s. Forces change it within the step, but that change is no impact speed.
+/// start of the step, in m/s. Speed gained from forces within the step does not count as impact speed.
 double ContactIsland::rebound(double restitution, double approach) const {
     return restitution * approach >= rules_.settings.resting_speed ? restitution : 0.0;
 }
@@ -267,7 +267,7 @@ void ContactIsland::set_exactness(const Pace& pace, double enough) {
 
 void ContactIsland::move(std::size_t index, ContactIslandMember& member, MoveScratch& scratch) const {
     if (member.is_fixed) return;
-    const double core = member.moving->state.radius;  // it spins faster than the whole sphere
+    const double core = member.moving->state.radius;  // the core spins faster than the whole sphere
     PlannedMotion plan{bodies_[index].velocity, core > 0.0 ? (member.radius / core) * bodies_[index].spin : Vec3{},
                        member.duration, impulses_of(index)};
     plan.is_clear = member.duration * length(plan.velocity) < clear_[index];

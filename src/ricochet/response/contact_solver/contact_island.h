@@ -1,5 +1,6 @@
 /// \file
-/// Private to the responses: a contact island, whose spheres are moved over a step by one contact problem.
+/// Private to the responses: a contact island. One contact problem determines the motion of all its spheres over a
+/// step.
 #pragma once
 
 #include <cmath>
@@ -22,9 +23,9 @@ namespace ricochet {
 struct ContactIslandMember {
     MovingParticle* moving = nullptr;
     double radius = 0.0;         ///< radius for contacts with other spheres, in m
-    bool is_fixed = false;       ///< true if nothing moves it
+    bool is_fixed = false;       ///< true if no impulse or force moves it
     double duration = 0.0;       ///< duration of its step, in s
-    bool is_pinched = false;     ///< true if it is pinched: its time is stalled, and others meet it at its position
+    bool is_pinched = false;     ///< true if its time is stalled; other spheres collide with it at its present position
     bool is_asleep = false;      ///< fixed while asleep; overlaps with it are not separated
     double reach = 0.0;          ///< search distance for contacts from its surface, in m
     std::uint32_t material = 0;  ///< index in PairMaterials
@@ -45,12 +46,12 @@ struct SleeperImpulse {
 /// Each sphere finally moves along its plan.
 class ContactIsland {
 public:
-    /// Both must outlive the object.
+    /// Both arguments must outlive the object.
     ContactIsland(const ResponseRules& rules, const PairMaterials& materials) : rules_(rules), materials_(materials) {}
 
     /// Returns the search distance for the first plan, in m: more than the length of the member's free path.
     [[nodiscard]] double first_reach(const ContactIslandMember& member) const;
-    /// Plans a step of `duration` seconds. `pairs` holds the indices of members within reach of each other, and
+    /// Plans a step of `duration` seconds. `pairs` contains the indices of members within reach of each other, and
     /// `memory` the contacts of the last step.
     SolverReport plan(std::span<const ContactIslandMember> members, std::span<const NeighbourPair> pairs,
                       double duration, const WarmStartMemory& memory, MoveScratch& scratch);
@@ -69,12 +70,12 @@ public:
     [[nodiscard]] std::vector<WarmStartMemory::Entry> entries() const;
     /// Returns the pairs of members that press on each other, by their indices.
     [[nodiscard]] std::vector<NeighbourPair> pressing() const;
-    /// Returns the impulses of spheres that are awake on sleeping spheres, one per contact.
+    /// Returns the impulses that awake spheres exert on sleeping spheres, one per contact.
     [[nodiscard]] std::vector<SleeperImpulse> impulses_on_sleepers() const;
     /// Returns the pairs with at most a very small gap, whether they press or not.
     [[nodiscard]] std::vector<ContactKey> touching() const;
     /// Increases the search distance of members whose plan leads beyond it. Returns their indices in ascending order.
-    /// If there are none, the plan leads into no unknown contact.
+    /// If there are none, all contacts of the plan are known.
     [[nodiscard]] std::vector<std::uint32_t> reach_farther(std::span<ContactIslandMember> members) const;
 
 private:

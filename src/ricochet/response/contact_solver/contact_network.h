@@ -1,6 +1,6 @@
 /// \file
-/// Private to the responses: one problem of rigid contact for many solid spheres, which touch each other and walls,
-/// over a time step.
+/// Private to the responses: the rigid contact problem of many solid spheres over one time step. The spheres touch each
+/// other and walls.
 ///
 /// The spheres would have the velocities v at the end of the step without contact. The unknown contact impulses P
 /// change them to v + sum(P / m). Each contact has a gap g at the start of the step, a normal n, and these conditions:
@@ -9,22 +9,22 @@
 ///     |P_t| <= friction P_n,  against the slip u_t, if any
 ///     |moment| <= rolling friction P_n,  against the rolling, if any
 ///
-/// u is the velocity of body a relative to b (or to the wall's material) at the contact, at the end of the step. An
-/// open contact takes part with its gap, so that nothing overlaps at the end of the step.
+/// u is the velocity of body a relative to b (or to the wall's material) at the contact, at the end of the step.
+/// Contacts with an open gap are included, so that no spheres overlap at the end of the step.
 ///
 /// Spheres can overlap slightly, because the sweeps end before full convergence. A step removes the fraction
 /// kOverlapRelease of an overlap. Gaps are measured anew in every step, so errors do not add up. Spheres keep the speed
-/// at which they separate. That speed is therefore limited, and deep overlaps separate slowly, however short the steps
-/// are.
+/// at which an overlap is separated. This speed is therefore limited, so that deep overlaps separate slowly even in
+/// short steps.
 ///
 /// Restitution: contacts with P_n > 0 join spheres to connected impacts. A contact that had an impulse in the last step
-/// presses, and has restitution 0. A connected impact has one restitution e, the smallest of its approaching contacts.
-/// A contact of restitution 0 does not count if its impulse only supports a body (kHoldsOnly). The contacts of the
-/// impact then separate with u_n >= -e u_n-, where u_n- is the value before the impulses. A separate restitution for
-/// each contact would multiply energy.
+/// is not a new impact, so its restitution is 0. A connected impact has one restitution e, the smallest of its
+/// approaching contacts. A contact of restitution 0 is ignored here if its impulse only supports a body (kHoldsOnly).
+/// The contacts of the impact then separate with u_n >= -e u_n-, where u_n- is the value before the impulses. A
+/// separate restitution for each contact would multiply energy.
 ///
 /// The impulses never add kinetic energy in the frame of the walls, apart from the work that separates overlaps. If the
-/// rebounds of a connected impact would add energy, they are suppressed.
+/// rebounds of a connected impact would add energy, the rebounds are suppressed.
 ///
 /// Sources: J. J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics", CISM 302 (1988), and
 /// M. Jean, "The non-smooth contact dynamics method", Comput. Methods Appl. Mech. Engrg. 177 (1999), for time stepping
@@ -44,7 +44,8 @@ namespace ricochet {
 
 /// A solid sphere, or a point (radius 0, which does not spin).
 struct SolverBody {
-    Vec3 velocity;                 ///< in m/s, at the end of the step: without contact before solving, with it after
+    Vec3 velocity;                 ///< in m/s, at the end of the step; without contact impulses before solving, with
+                                   ///< them after
     Vec3 spin;                     ///< in rad/s, likewise
     double inverse_mass = 1.0;     ///< in 1/kg; 0 for a fixed body
     double inverse_inertia = 0.0;  ///< in 1/(kg m^2)
@@ -73,7 +74,7 @@ struct SolverContact {
     double friction = 0.0;           ///< Coulomb's coefficient
     double rolling_friction = 0.0;   ///< moment over normal force, in m
     double restitution = 0.0;        ///< 0..1
-    double most_parting = INFINITY;  ///< largest speed that separates an overlap, in m/s
+    double most_parting = INFINITY;  ///< largest speed at which an overlap is separated, in m/s
     double exactness = 1.0;          ///< >= 1; divides the tolerances of this contact
     bool touched = false;            ///< true if it already pressed in the last step
     SolverImpulse start;             ///< start value: its impulse in the last step
@@ -84,11 +85,11 @@ struct SolverContact {
 /// contact conditions may be violated.
 struct SolverSettings {
     double duration = 1.0;     ///< duration of the step, in s
-    double tolerance = 1e-12;  ///< wanted
-    double enough = 0.0;       ///< accepted after `sweeps`
-    double slip = 0.0;         ///< if larger, applies to slip and rolling, because they cause no overlap
+    double tolerance = 1e-12;  ///< the solver ends after any sweep that meets it
+    double enough = 0.0;       ///< the solver ends after `sweeps` sweeps if this is met
+    double slip = 0.0;         ///< replaces smaller tolerances for slip and rolling, because they cause no overlap
     double connecting =
-        0.0;  ///< if larger, applies to the first solution, without rebound, which only finds connected impacts
+        0.0;  ///< replaces a smaller `tolerance` in the first solution, which only finds connected impacts
     int sweeps = 10000;
     int most_sweeps = 10000;
 };

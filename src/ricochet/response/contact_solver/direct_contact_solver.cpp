@@ -11,18 +11,18 @@ namespace {
 
 constexpr std::uint32_t kFixed = std::numeric_limits<std::uint32_t>::max();
 
-/// Stiffness of the dampers, relative to the heaviest mass. Reason: a pass leaves a hundredth of the violation.
-/// Rounding causes an error of 1e-5 of the speeds for spheres of a billionth of that mass. Smaller: more passes. Local,
-/// because SolverSettings has the tolerance.
+/// Stiffness of the dampers, relative to the heaviest mass. Reason: each pass reduces the violation to a hundredth. For
+/// spheres of a billionth of that mass, rounding causes errors of 1e-5 of the speeds. A smaller stiffness needs more
+/// passes. Local, because SolverSettings has the tolerance.
 constexpr double kStiffness = 100.0;
 
-/// Factor between successive stiffnesses, from that of the lightest mass to that of the heaviest. The second constant
-/// is the number of Newton steps at each of them, and in the first attempt.
+/// Factor between successive stiffnesses, which grow from that for the lightest mass to that for the heaviest. The
+/// second constant is the number of Newton steps at each stiffness and in the first attempt.
 constexpr double kStiffer = 100.0;
 constexpr int kFewSteps = 8;
 
 /// Largest number of passes after the first, and of Newton steps in each. Networks that need more have no solution, or
-/// their friction cycles.
+/// friction makes the iteration cycle.
 constexpr int kMostPasses = 3;
 constexpr int kMostSteps = 80;
 
@@ -45,7 +45,7 @@ constexpr double kMostOperations = 1e9;
 /// matrix is singular. Local, because the residual decides when a solution is accepted.
 constexpr double kSlipStiffness = 1e-9;
 
-/// Returns the derivative of a tangential vector, limited to the length `most`, with respect to the vector `wish`.
+/// Returns the derivative, with respect to `wish`, of the tangential part of `wish` limited to the length `most`.
 Block3 kept_change(const Vec3& normal, const Vec3& wish, double most, bool is_smooth) {
     Block3 result{};
     const double size = length(wish);
@@ -283,8 +283,8 @@ void DirectContactSolver::add_rolling(std::size_t i) {
         add(matrix_.between[places_[i].turnings], -stiffness * rolling.per_radius_a * rolling.per_radius_b, change);
 }
 
-/// Finds the velocities at which the impulses of dampers and multipliers balance the momentum. Returns false if the
-/// residual, in m/s, remains above `most_defect`.
+/// Finds the velocities at which the impulses of dampers and multipliers balance the changes of momentum. Returns false
+/// if the residual, in m/s, remains above `most_defect`.
 bool DirectContactSolver::minimise(double most_defect, int most_steps) {
     is_smooth_ = true;
     ahead_.assign(parts_.rows.size(), 0);
@@ -318,8 +318,8 @@ double DirectContactSolver::slope_along(std::span<const double> direction) const
     return sum;
 }
 
-/// Moves along a direction until the slope of the function, which increases along the line, is nearly 0. Returns false
-/// if the step was shortened.
+/// Moves along a direction until the slope of the minimised function is nearly 0; the slope increases along the
+/// direction. Returns false if the step was shortened.
 bool DirectContactSolver::search_along(std::span<const double> direction) {
     const double first = slope_along(direction);
     double low = 0.0;
@@ -348,7 +348,7 @@ bool DirectContactSolver::search_along(std::span<const double> direction) {
     return false;
 }
 
-/// Makes the impulses the new multipliers. Returns the largest violation of the conditions, in m/s.
+/// Stores the impulses as the new multipliers. Returns the largest violation of the conditions, in m/s.
 double DirectContactSolver::update_multipliers() {
     double worst = 0.0;
     for (std::size_t i = 0; i < responses_.size(); ++i) {

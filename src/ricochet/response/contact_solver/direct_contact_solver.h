@@ -2,16 +2,17 @@
 /// Private to the contact solver: the direct contact solver, an augmented Lagrangian Newton method with a
 /// factorization. It solves networks whose masses differ so much that sweeps hardly converge.
 ///
-/// Example: a light sphere transmits the load of a heavy one to a floor. Plain sweeps then need a number of the order
-/// of the mass ratio, because each sweep moves only the light sphere. Here all velocities are solved together. Impulses
-/// come from stiff dampers between surfaces, in addition to multipliers p from earlier passes:
+/// Example: a light sphere transmits the load of a heavy one to a floor. The number of plain sweeps needed is then of
+/// the order of the mass ratio, because each sweep moves only the light sphere. Here all velocities are solved
+/// together. Impulses come from stiff dampers between surfaces, in addition to multipliers p from earlier passes:
 ///
 ///     P_n = max(0, p_n - k (u_n + bound)),   P_t = p_t - k u_t, limited to the friction cone
 ///
 /// The friction cone uses the normal impulses P_n at the same velocities. Each pass finds the velocities at which these
-/// impulses balance the momentum. For fixed limits of friction they minimise a convex function, so Newton's method
-/// finds them. The impulses are the multipliers of the next pass. The stiffness k is a multiple of the heaviest mass.
-/// Each pass therefore removes all but a small part of the violation, however light the other spheres are.
+/// impulses balance the momentum. For fixed limits of friction, these velocities minimise a convex function, so
+/// Newton's method finds them. The impulses are the multipliers of the next pass. The stiffness k is a multiple of the
+/// heaviest mass. Each pass therefore removes all but a small part of the violation, however light the other spheres
+/// are.
 ///
 /// Source: P. Alart, A. Curnier, "A mixed formulation for frictional contact problems prone to Newton like solution
 /// methods", Comput. Methods Appl. Mech. Engrg. 92 (1991).
@@ -50,7 +51,7 @@ private:
     struct BlockIndices {
         std::uint32_t velocities, a_turning_a, a_turning_b, b_turning_a, b_turning_b, turnings;
     };
-    /// Impulses of a row at the current velocities, after and before the limits of friction.
+    /// Impulses of a row at the current velocities, with the limits of friction and without them.
     struct ImpulseResponse {
         double normal = 0.0;
         Vec3 tangential;
@@ -90,7 +91,7 @@ private:
     double operations_left_ = 0.0;  // budget of the remaining factorizations
     BlockMatrix matrix_;
     std::vector<ImpulseResponse> responses_;  // one per row
-    std::vector<std::uint8_t> ahead_;         // one per row: 1 if the last Newton step, at full length, would press it
+    std::vector<std::uint8_t> ahead_;         // one per row: 1 if the full Newton step would give it a normal impulse
     std::vector<double> gradient_;            // in kg m/s, three numbers per unknown
 };
 

@@ -13,9 +13,9 @@ namespace {
 /// Contacts per block of parallel work. Sums are computed by these blocks for any number of threads.
 constexpr std::size_t kBlock = 512;
 
-/// Every time this number of restarts has passed, the number of sweeps without momentum after each restart grows by
-/// one. Friction can make the iteration circle. Large networks that converge restart a few dozen times. Local: the
-/// residual decides when the iteration ends.
+/// Number of restarts after which the number of sweeps without momentum after each restart grows by one. Reason:
+/// friction can make the iteration cycle. Large networks that converge restart a few dozen times. Local: the residual
+/// decides when the iteration ends.
 constexpr int kRestartsAPlainSweep = 64;
 
 /// Returns the limits for a tolerance in m/s.
@@ -23,7 +23,7 @@ SolverLimits limits_of(const SolverSettings& settings, double tolerance) {
     return {tolerance, std::max(tolerance, settings.slip)};
 }
 
-/// Returns the heavier over the lighter mass of two bodies, or 1 if one of them is a wall.
+/// Returns the ratio of the heavier to the lighter mass of two bodies, or 1 if one of them is a wall.
 double ratio_of(const SolverState& a, const SolverState& b) {
     const auto [low, high] = std::minmax(a.inverse_mass, b.inverse_mass);
     return low > 0.0 ? high / low : 1.0;
@@ -112,7 +112,7 @@ void IterativeContactSolver::set_row(ContactConstraint& row, const SolverContact
         row.bound = -partings_.back();
     }
     if (inverse_mass_of(before_[row.a], before_[row.b]) == 0.0) {
-        row.bound = INFINITY;  // both are fixed; sweeps, which divide by the mobility, skip them
+        row.bound = INFINITY;  // both are fixed; sweeps skip the row, as they divide by the inverse mass
         return;
     }
     row.impulse.normal = std::max(0.0, contact.start.normal);
@@ -144,9 +144,9 @@ void IterativeContactSolver::add_rolling(const SolverContact& contact, std::span
     rolling_.push_back(rolling);
 }
 
-/// Applies all start impulses, or none if they would not oppose the motion, for example after a reversal of forces.
-/// Most contacts keep their impulses from step to step, and sweeps soon correct the others. A fraction of all start
-/// impulses would disturb all spheres at rest.
+/// Applies all start impulses, or none if their total work is positive, for example after a reversal of forces. Most
+/// contacts keep their impulses from step to step, and sweeps soon correct the others. Applying only a fraction of each
+/// start impulse would disturb all spheres at rest.
 void IterativeContactSolver::apply_start() {
     if (against_start_ > 0.0) {
         for (ContactConstraint& row : rows_) row.impulse = {};
@@ -175,8 +175,8 @@ void IterativeContactSolver::add_gain(const ContactConstraint& row, std::span<co
 }
 
 /// Sweeps with Nesterov's momentum, which restarts whenever a sweep changes more than the one before. If masses differ
-/// much and the sweeps do not converge, the direct contact solver is used. More sweeps then check its result, and the
-/// state before it is restored if the residual has grown.
+/// much and the sweeps do not converge, the direct contact solver is used. Further sweeps then check its result. If the
+/// residual has grown, the state before the direct solver is restored.
 void IterativeContactSolver::iterate(const SolverSettings& settings, SolverReport& report) {
     const bool are_very_unlike = mass_ratio_ > kVeryUnlikeMasses;
     const int first = are_very_unlike ? std::min(settings.sweeps, settings.most_sweeps) : settings.most_sweeps;
@@ -192,7 +192,7 @@ void IterativeContactSolver::iterate(const SolverSettings& settings, SolverRepor
     sweep_until(settings, settings.most_sweeps, report);
 }
 
-/// Returns false if `most` sweeps do not meet the settings.
+/// Sweeps until the tolerances of the settings are met. Returns false if `most` sweeps do not meet them.
 bool IterativeContactSolver::sweep_until(const SolverSettings& settings, int most, SolverReport& report) {
     const SolverLimits wished = limits_of(settings, settings.tolerance);
     const SolverLimits enough = limits_of(settings, std::max(settings.tolerance, settings.enough));

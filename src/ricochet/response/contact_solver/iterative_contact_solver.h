@@ -14,16 +14,16 @@
 
 namespace ricochet {
 
-/// Solves contact networks and reuses its memory. All threads solve a large network together. The result has the same
-/// bits for any number of threads. Another order of the contacts changes it only within the tolerance.
+/// Solves contact networks and reuses its memory. All threads solve a large network together. The result is
+/// bit-identical for any number of threads. A different order of the contacts changes it only within the tolerance.
 class IterativeContactSolver {
 public:
-    /// Updates the bodies' velocities and spins. Contacts name bodies by their index.
+    /// Updates the bodies' velocities and spins. Contacts refer to bodies by index.
     SolverReport solve(std::span<SolverBody> bodies, std::span<const SolverContact> contacts,
                        const SolverSettings& settings);
     /// Returns the impulses of the last network's contacts, in their order.
     [[nodiscard]] std::span<const SolverImpulse> impulses() const { return impulses_; }
-    /// Returns 1 for each of these contacts that restitution separates, otherwise 0.
+    /// Returns one flag per contact: 1 if restitution separates it, otherwise 0.
     [[nodiscard]] std::span<const std::uint8_t> rebounds() const { return rebounds_; }
 
 private:
@@ -43,7 +43,7 @@ private:
         [[nodiscard]] double factor() const;
     };
 
-    /// All data that sweeps change.
+    /// All data that a sweep modifies, so that they can be saved and restored.
     struct Impulses {
         std::vector<ContactConstraint> rows;
         std::vector<RollingConstraint> rolling;
@@ -75,7 +75,7 @@ private:
     std::size_t bodies_ = 0;
     std::vector<ContactConstraint> rows_;  // in the order of the colours
     std::vector<RollingConstraint> rolling_;
-    std::vector<double> partings_;      // speed of each row that separates its overlap, in m/s, >= 0
+    std::vector<double> partings_;      // speed at which each row separates its overlap, in m/s, >= 0
     std::vector<double> restitutions_;  // own restitution of each row, not limited by its connected impact
     double against_start_ = 0.0;        // work of the start impulses at the velocities before contact, in J
     std::vector<SolverState> last_;     // bodies before the last momentum step

@@ -9,9 +9,9 @@
 namespace ricochet {
 namespace {
 
-/// Returns the restitution of each connected impact: the smallest of its approaching contacts with an impulse, or 1
-/// without any. A contact without restitution that only supports a body does not count. `all_own` holds the restitution
-/// of each row.
+/// Returns the restitution of each connected impact: the smallest of its approaching contacts with an impulse, or 1 if
+/// there are none. A contact without restitution that only supports a body does not count. `all_own` contains the
+/// restitution of each row.
 std::vector<double> restitutions(const ConnectedImpacts& impacts, std::span<const SolverState> before,
                                  std::span<const ContactConstraint> rows, std::span<const double> all_own) {
     std::vector<double> least(impacts.size(), 1.0);
@@ -75,8 +75,8 @@ bool IterativeContactSolver::apply_restitution() {
     return any;
 }
 
-/// Finds the connected impacts again and computes the energy change of each. The work that separates overlaps is no
-/// gain.
+/// Finds the connected impacts again and computes the energy change of each. The work that separates overlaps does not
+/// count as a gain.
 void IterativeContactSolver::find_gains() {
     impacts_.assign(before_, rows_);
     gains_.assign(impacts_.size(), {});

@@ -30,9 +30,9 @@ bool find_wall_contacts(const SurfaceGeometry& geometry, const Vec3& center, dou
                         std::vector<WallContact>& found);
 
 /// Appends the contacts with colliders at rest, and with moving colliders that come near in a step. Gaps are those at
-/// the start of the step. Normals of rigid colliders are those in the middle of the step, because the mean velocity of
-/// a point on a rotating surface is tangential there. Normals at the start of the step would give a rotating drum a
-/// normal velocity. Returns true if any surface may come within reach in the step.
+/// the start of the step. Normals of rigid colliders are those in the middle of the step. The mean velocity of a point
+/// on a rotating surface has no component along these normals. Normals at the start of the step would give a rotating
+/// drum a normal velocity. Returns true if any surface may come within reach in the step.
 bool find_wall_contacts(const MovingColliders& bodies, const SurfaceGeometry& at_rest, const TimeOfStep& step,
                         const Vec3& center, double radius, double reach, std::vector<WallContact>& found);
 

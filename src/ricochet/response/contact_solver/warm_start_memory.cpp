@@ -15,8 +15,8 @@ constexpr std::size_t kNetworkMemoryPrefetchDistance = 8;
 
 }  // namespace
 
-/// Sorts indices, because entries are too large to be moved repeatedly. It sorts by particle, and then the few contacts
-/// of each particle.
+/// Sorts indices by particle, and then the few contacts of each particle. The entries themselves are too large to be
+/// moved repeatedly.
 void WarmStartMemory::replace(std::span<const std::vector<Entry>* const> lists) {
     std::vector<const Entry*> all;
     order_.clear();

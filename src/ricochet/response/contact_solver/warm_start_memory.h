@@ -43,7 +43,7 @@ public:
 
     /// Contacts whose key has the same `particle`, in ascending order.
     struct OfParticle {
-        std::span<const std::uint64_t> others;  ///< from their keys, stored together for fast searches
+        std::span<const std::uint64_t> others;  ///< `other` of each key, stored contiguously for fast searches
         const Entry* first = nullptr;
 
         [[nodiscard]] std::span<const Entry> entries() const { return {first, others.size()}; }
@@ -96,17 +96,17 @@ public:
         find_particles();
     }
 
-    /// Returns false for entries that no run produces. Their keys must be unique and in ascending order, ids must be
-    /// below next_id, surfaces must be below `surfaces`, and impulses must be finite.
+    /// Returns true if a run can have produced the entries. Their keys must be unique and in ascending order, ids must
+    /// be below next_id, surfaces must be below `surfaces`, and impulses must be finite.
     [[nodiscard]] bool is_sound(std::uint64_t next_id, std::size_t surfaces) const;
 
 private:
     void find_particles();
 
     std::vector<Entry> entries_;            // in ascending order of the keys
-    std::vector<std::uint64_t> particles_;  // different particles of the keys, in ascending order
+    std::vector<std::uint64_t> particles_;  // distinct particles of the keys, in ascending order
     std::vector<std::size_t> first_;        // first entry of each of these particles, and the end
-    std::vector<std::uint64_t> others_;     // from the keys of the entries
+    std::vector<std::uint64_t> others_;     // `other` of each entry's key
     std::vector<KeyedIndex> order_;         // scratch memory of replace()
     std::vector<KeyedIndex> spare_;
 };

@@ -13,8 +13,8 @@ namespace {
 /// cost depends on it.
 constexpr int kPieceDepth = 40;
 
-// Returns true if a piece of the path may come near the triangles. The margin for curvature also keeps chords that
-// begin on this piece and end on the next one away from the triangles.
+// Returns true if a piece of the path may come near the triangles. The margin for curvature is included because a chord
+// can begin on this piece and end on the next one.
 bool may_reach_triangles(const CollisionWorld& world, const QueryMargins& margins, const Path& path, double from,
                          double to) {
     Box3 box;
@@ -82,7 +82,7 @@ struct ClearQuery {
     const CollisionWorld& world;
     const QueryMargins& margins;
     const Path& path;
-    double until;  ///< in s: before the query the end of the search, after it the result
+    double until;  ///< in s: end of the search before the query, result after it
 
     void test_piece(double from, double to, int depth) {
         if (from >= until) return;
@@ -125,8 +125,9 @@ double broad_phase_margin(const Path& path, const QueryMargins& margins) {
     return margins.radius + 2.0 * margins.slack + std::min(path.sagitta(0.0, path.duration), 0.5 * margins.curvature);
 }
 
-// A point of a chord lies within the chord's sagitta of the path. The nearest path point lies within its piece's
-// sagitta of the piece's chord. The sum must not exceed the margin that the boxes leave for curvature.
+// A point of a chord is at most the chord's sagitta away from the path. The nearest point of the path is at most the
+// sagitta of its piece away from the chord of that piece. The sum must not exceed the margin that the boxes leave for
+// curvature.
 bool covers_chord(const CollisionWorld& world, const QueryMargins& margins, const Path& path, double from, double to) {
     return path.degree < 2 || world.triangles().empty() || 2.0 * path.sagitta(from, to) <= margins.curvature ||
            !may_reach_triangles(world, margins, path, from, to);
@@ -141,7 +142,7 @@ CandidateSet test_triangles_near(const CollisionWorld& world, const QueryMargins
     } else if (!world.culls() || may_reach_triangles(world, margins, path, 0.0, path.duration)) {
         query.test_all();
     }
-    // The chords that a particle follows must not depend on culling.
+    // Without culling, the result is `near` too, because the chords that a particle follows must not depend on culling.
     if (!world.culls() && margins.boxes_hold) return CandidateSet::near;
     return query.candidates;
 }

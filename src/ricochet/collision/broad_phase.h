@@ -21,7 +21,7 @@ enum class CandidateSet {
     all,   ///< all triangles: the path is too curved or too long for the boxes, or culling is off
 };
 
-/// Passes every triangle that the path may come near to the narrow phase, in the order of time, up to the first
+/// Passes to the narrow phase every triangle that the path may come near, in the order of time, up to the first
 /// contact. The path is divided for the boxes only: the narrow phase tests every triangle against the whole path.
 [[nodiscard]] CandidateSet test_triangles_near(const CollisionWorld& world, const QueryMargins& margins,
                                                const Path& path, NarrowPhase& narrow_phase);

@@ -18,12 +18,12 @@ constexpr std::size_t kMostSurfaces = 24;
 /// limit of this search, whose result is checked.
 constexpr int kMostRounds = 8;
 
-/// Part of the clearance that a displacement may miss through rounding. Local, because the displacement is certified
-/// before use.
+/// Fraction of the clearance by which a displacement may fall short because of rounding. Local, because the
+/// displacement is certified before use.
 constexpr double kClearEnough = 0x1p-20;
 
 /// Smallest determinant of three normals, or squared sine of the angle between two, for which they count as
-/// independent. Local, because other triples of normals give the displacement then.
+/// independent. Local, because other combinations of normals give the displacement if one is skipped.
 constexpr double kDependent = 1e-24;
 
 /// A surface near the ball. The displacement d has to satisfy dot(d, normal) >= missing.

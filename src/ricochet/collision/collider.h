@@ -29,8 +29,8 @@ struct MeshShape {
     /// Material of every triangle, as indices into the simulation's materials. If empty, all triangles have the
     /// collider's material.
     std::vector<std::uint32_t> triangle_materials = {};
-    /// Positions of the vertices over time, before the placement, of a deforming mesh; null for a rigid one. The
-    /// vertices of `mesh` are ignored if this is set.
+    /// Positions of a deforming mesh's vertices over time, before the placement; null for a rigid mesh. The vertices of
+    /// `mesh` are ignored if this is set.
     std::shared_ptr<const MeshMotion> motion = nullptr;
 };
 
@@ -84,8 +84,8 @@ struct ColliderDescription {
     std::string name;
     ColliderShape shape;
     std::uint32_t material = 0;  ///< index into the simulation's materials
-    /// Name of the frame that the collider moves with. Its placement is relative to that frame. If empty, it is the
-    /// world.
+    /// Name of the frame that the collider moves with. Its placement is relative to that frame. If empty, the collider
+    /// is at rest in the world.
     std::string frame = {};
 };
 

@@ -23,7 +23,7 @@ std::size_t surfaces_of(const ColliderDescription& collider) {
     require(mesh->mesh && !mesh->mesh->triangles.empty(), "its mesh has no triangles, expected at least one");
     const std::size_t count = mesh->mesh->triangles.size();
     require(mesh->triangle_materials.empty() || mesh->triangle_materials.size() == count,
-            "its material list does not have one entry a triangle");
+            "its material list does not have one entry per triangle");
     require(count <= std::numeric_limits<SurfaceId>::max() / 2,
             "the scene's meshes have more than 2^31 triangles or vertices together");
     return count;

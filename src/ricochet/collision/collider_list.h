@@ -28,9 +28,10 @@ public:
     [[nodiscard]] SurfaceName name_of(SurfaceId surface) const;
     /// Returns the material of a surface: the material of its triangle if it has one, otherwise of its collider.
     [[nodiscard]] std::uint32_t material_of(SurfaceId surface) const;
-    /// Releases a mesh of which a collision world has its own copy.
+    /// Releases the mesh of a collider after a collision world has made its own copy.
     void drop_mesh(std::size_t collider);
-    /// Replaces the motion of a deforming mesh by the given one, with the placement applied. Releases its mesh.
+    /// Replaces the motion of a deforming mesh by the given motion, to which the placement has been applied. Releases
+    /// the collider's mesh.
     void replace_motion(std::size_t collider, std::shared_ptr<const MeshMotion> motion);
     /// Returns the memory of the list, in bytes, without the meshes.
     [[nodiscard]] std::size_t memory_bytes() const;

@@ -32,7 +32,8 @@ double mean_box(const PlacedColliders& world) {
 }
 
 /// Returns true if p is above the triangle's face and the distances from its rim and its face differ by rounding only.
-/// A sphere that rolls over a rim then changes from face to rim exactly there, and not 1e-8 of its radius too early.
+/// A sphere that rolls over a rim then changes from face to rim exactly at the rim. Otherwise it would change too
+/// early, by 1e-8 of its radius.
 bool is_over_rim(const TrianglePlane& triangle, const Vec3& p, double distance_from_rim) {
     const double height = std::fabs(triangle.signed_distance(p));
     if (height < (1.0 - kRimTie) * distance_from_rim || height == 0.0) return false;

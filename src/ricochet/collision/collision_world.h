@@ -20,8 +20,8 @@ namespace ricochet {
 /// surface accept only surfaces of this frame.
 class CollisionWorld : public PlacedColliders {
 public:
-    /// Also builds the broad phase. `chord_margin` is the distance that a path may lie beside its chords before the
-    /// broad phase divides it. Its unit is the mean box diagonal of the triangles. Results do not depend on it.
+    /// Also builds the broad phase. It divides a path whose distance from its chord exceeds `chord_margin`. The unit of
+    /// `chord_margin` is the mean box diagonal of the triangles. Results do not depend on it.
     CollisionWorld(std::shared_ptr<ColliderList> colliders, std::string_view frame, double chord_margin = kChordMargin);
     /// Builds the world frame from colliders that are all at rest.
     explicit CollisionWorld(std::vector<ColliderDescription> colliders, double chord_margin = kChordMargin);
@@ -69,14 +69,14 @@ public:
     /// whole duration for a plane and for a shape's side.
     [[nodiscard]] double time_over(SurfaceId surface, const Path& path, double slack) const;
     /// Returns true if the closed segment [p, q] intersects the surface. The decision is exact for planes and
-    /// triangles. For shapes it errs towards true, by some 2^-90.
+    /// triangles. For shapes it errs on the side of true, by about 2^-90.
     [[nodiscard]] bool segment_intersects(SurfaceId surface, const Vec3& p, const Vec3& q) const;
     /// Returns true if the point lies on the surface, as precisely as segment_intersects() decides it.
     [[nodiscard]] bool point_on(SurfaceId surface, const Vec3& p) const { return segment_intersects(surface, p, p); }
 
     /// Returns the broad phase over the triangles of all meshes for particles of the given radius. It proposes
-    /// triangles by their index in triangles(). Each radius class (a power of two) has its own, so that small particles
-    /// do not pay for large ones. The class must have been prepared.
+    /// triangles by their index in triangles(). Each radius class (a power of two) has its own broad phase, so that
+    /// large particles do not enlarge the boxes for small ones. The class must have been prepared.
     [[nodiscard]] const TriangleBvh& bvh_for(double radius) const;
     /// Builds the class of a radius if it does not exist yet. Must not run while other threads query.
     void prepare_radius(double radius);
@@ -84,10 +84,10 @@ public:
     /// same but slower; tests use them as the reference.
     void set_culling(bool culls) { culls_ = culls; }
     [[nodiscard]] bool culls() const { return culls_; }
-    /// Field of lower bounds of the distance to the triangles.
+    /// Returns the field of lower bounds of the distance to the triangles.
     [[nodiscard]] const DistanceField& distance_field() const { return distance_field_; }
-    /// Returns the memory of the world, in bytes, without the meshes that the colliders were made from. It includes
-    /// memory that Embree maps by itself.
+    /// Returns the memory of the world, in bytes, without the meshes that the colliders were made from. The result
+    /// includes memory that Embree allocates itself.
     [[nodiscard]] std::size_t memory_bytes() const;
     /// Appends the memory pages of the large arrays, which no longer change.
     void add_pages_to(std::vector<std::span<const std::byte>>& pages) const;
@@ -99,7 +99,7 @@ private:
     }
     [[nodiscard]] double largest_radius_of_class(double radius) const;
 
-    double chord_margin_ = 0.0;       ///< in m, distance that a path may lie beside its chords before it is divided
+    double chord_margin_ = 0.0;       ///< in m, largest distance of a path from its chords without division
     TriangleBvh::Clusters clusters_;  ///< clusters of all triangles, shared by the radius classes
     struct RadiusClass {
         double largest_radius;

@@ -19,8 +19,9 @@ class SurfacesInOtherFrames;
 
 // The surfaces near a path, and the certificate of segments beside it.
 
-/// The surfaces that a contact query has gathered near its path, up to the first contact. Statements about segments are
-/// valid for segments on the path or within slack() of it. Valid until the next query with the same scratch memory.
+/// The surfaces that a contact query has gathered near its path, up to the first contact. Results about segments are
+/// valid for segments on the path or within slack() of it. The object is valid until the next query with the same
+/// scratch memory.
 class NearSurfaces {
 public:
     NearSurfaces(const SurfaceGeometry& geometry, const ContactScratch& scratch, const QueryMargins& margins,
@@ -29,36 +30,37 @@ public:
 
     /// Returns true if no surface blocks the closed segment [p, q] of the centre. This is the certificate. A surface
     /// blocks a segment that intersects it; this is decided exactly for planes and triangles. It also blocks a segment
-    /// that comes nearer to it than the radius less sphere_tolerance() of the segment. Supports and surfaces that are
+    /// that comes nearer to it than the radius minus sphere_tolerance() of the segment. Supports and surfaces that are
     /// overlapped from the start block only segments that intersect them.
     [[nodiscard]] bool is_free(const Vec3& p, const Vec3& q) const;
     /// Returns the surface with the smallest number that blocks the segment, or nothing.
     [[nodiscard]] std::optional<SurfaceId> blocker(const Vec3& p, const Vec3& q) const;
-    /// Returns a support, or a surface that is overlapped from the start, that a sphere at q overlaps by more than the
-    /// tolerance and more than a sphere at p. is_free() does not see such an overlap.
+    /// Returns a surface that a sphere at q overlaps by more than the tolerance, and by more than a sphere at p. It
+    /// tests the supports and the surfaces that are overlapped from the start, because is_free() ignores their overlap.
     [[nodiscard]] std::optional<SurfaceId> deepened_overlap(const Vec3& p, const Vec3& q) const;
     /// Returns true if a segment that starts on surfaces leaves all of them and intersects no other.
     [[nodiscard]] bool is_free_after(const Vec3& p, const Vec3& q) const;
 
     // Functions for space-time segments between two stored positions. Such a segment is free if it is free in the frame
-    // of every collider near it. If nothing moves, it is the straight segment.
+    // of every collider near it. If no collider moves, it is the straight segment.
 
     /// Adds the surfaces of other frames, which must outlive this object.
     void join(const SurfacesInOtherFrames& other_frames) { other_frames_ = &other_frames; }
     [[nodiscard]] const SurfacesInOtherFrames* other_frames() const { return other_frames_; }
     /// Returns the start of the path.
     [[nodiscard]] PathPoint start() const;
-    /// Returns the stored position nearest to a point at a time along the path.
+    /// Returns the stored position nearest to point p at the given time along the path.
     [[nodiscard]] PathPoint point_at(const Vec3& p, double time) const;
     [[nodiscard]] bool is_segment_free(const PathPoint& p, const PathPoint& q) const;
     [[nodiscard]] std::optional<SurfaceId> segment_blocker(const PathPoint& p, const PathPoint& q) const;
     [[nodiscard]] std::optional<SurfaceId> overlap_deepened_by(const PathPoint& p, const PathPoint& q) const;
-    /// CollisionWorld's functions of the same names. They accept a surface of any frame and return values in this
-    /// frame.
+    /// Equivalents of CollisionWorld's functions with the same names. They accept a surface of any frame and return
+    /// values in this frame.
     [[nodiscard]] CollisionWorld::Nearest nearest(SurfaceId surface, const PathPoint& p) const;
     [[nodiscard]] double signed_distance_from(SurfaceId surface, const PathPoint& p) const;
     [[nodiscard]] Vec3 unit_normal_of(SurfaceId surface, const PathPoint& p) const;
-    /// Returns a surface with its normal at p, which faces p. The normal is zero if a point p lies in its plane.
+    /// Returns a surface with its normal at p, which points towards p. For a point p in the plane of the surface, the
+    /// normal is zero.
     [[nodiscard]] ContactSurface facing_surface(SurfaceId surface, const PathPoint& p) const;
     /// Returns the contact offset, in m, for the largest coordinate that a position has in any frame.
     [[nodiscard]] double offset_at(const PathPoint& p) const;
@@ -82,13 +84,13 @@ private:
     [[nodiscard]] std::vector<SurfaceId> surfaces(const Vec3& p) const;
     [[nodiscard]] bool is_own(SurfaceId surface) const;
     [[nodiscard]] bool is_overlapped(SurfaceId surface) const;
-    /// Returns sphere_tolerance() of a segment, in m; 0 for a point. The path may end far away, and its rounding there
-    /// must not let a sphere sink in here.
+    /// Returns sphere_tolerance() of a segment, in m; 0 for a point. It depends on the segment, because the larger
+    /// rounding error at a distant end of the path must not allow an overlap here.
     [[nodiscard]] double tolerance_of(const Vec3& p, const Vec3& q) const {
         if (margins_.radius == 0.0) return 0.0;
         return sphere_tolerance(margins_.radius, std::max(max_abs(p), max_abs(q)));
     }
-    // These functions take tolerance_of() of the segment.
+    // `tolerance` is tolerance_of() of the segment.
     [[nodiscard]] bool plane_blocks(const CollisionWorld::PlaneSurface& plane, const Vec3& p, const Vec3& q,
                                     double tolerance) const;
     [[nodiscard]] bool shape_blocks(const CollisionWorld::ShapeSurface& shape, const Vec3& p, const Vec3& q,
@@ -107,14 +109,14 @@ private:
 struct ContactQuery {
     const Path& path;     ///< path of the centre; finite
     double radius = 0.0;  ///< in m, 0 for a point; prepared (CollisionWorld::prepare_radius)
-    /// Continuation of the path, which begins with `path`; null: no look-ahead. The contact does not depend on it.
+    /// Longer path that begins with `path`, for the look-ahead; null: no look-ahead. The contact does not depend on it.
     const LookAhead* look_ahead = nullptr;
     /// All triangles near this path, if an earlier query has found them (LookAheadResult::candidates).
     ContactCandidates candidates = {};
-    /// Surfaces that support the particle, so that it follows them. They are no contacts, and block only segments that
-    /// intersect them.
+    /// Surfaces that support the particle, which moves along them. They are not reported as contacts, and block only
+    /// segments that intersect them.
     std::span<const SurfaceId> supports = {};
-    /// Distance, in m, that positions along the path may lie beside it in addition to rounding.
+    /// Distance, in m, by which positions may deviate from the path in addition to rounding.
     double beside = 0.0;
 };
 
@@ -126,7 +128,7 @@ struct ContactQueryResult {
 };
 
 /// Returns the first contact of a point or a sphere. `geometry` and `scratch` must belong to the calling thread. The
-/// member `near` is valid until the next query with them.
+/// member `near` is valid until the next query with either of them.
 [[nodiscard]] ContactQueryResult find_first_contact(const SurfaceGeometry& geometry, const ContactQuery& query,
                                                     ContactScratch& scratch);
 

@@ -45,12 +45,12 @@ private:
     std::array<TrianglePlane, kSlots> plane_;
 };
 
-/// Distances and normals of surfaces. It has functions of CollisionWorld, which are faster here for recently used
-/// triangles. One object is for one particle in one thread. World and cache must outlive it.
+/// Distances and normals of surfaces. It has some functions of CollisionWorld, in versions that are faster for recently
+/// used triangles. Each object is for one particle in one thread. World and cache must outlive it.
 class SurfaceGeometry {
 public:
-    /// `least_offset` is the smallest contact offset, in m. It is used in moving frames, whose coordinates are rounded
-    /// like larger ones.
+    /// `least_offset` is the smallest contact offset, in m. Moving frames need it, because their coordinates have the
+    /// rounding errors of larger coordinates.
     SurfaceGeometry(const CollisionWorld& world, TrianglePlaneCache& cache, double least_offset = 0.0)
         : world_(&world), cache_(&cache), least_offset_(least_offset) {
         cache.clear();
@@ -101,7 +101,7 @@ struct ContactScratch {
     /// A triangle that comes near after the path's end.
     struct Approach {
         std::uint32_t triangle;
-        double begin;  ///< in s along the look-ahead's path
+        double begin;  ///< time along the look-ahead's path, in s
     };
 
     std::vector<std::uint32_t> triangles;  ///< candidates that may touch the path, up to the first contact found
@@ -121,7 +121,7 @@ struct ContactScratch {
             double tolerance = 0.0;  ///< largest deviation of a piece from the true path in the body's coordinates, m
             double fourth = 0.0;     ///< bound of the path's fourth derivative there, in m/s^4
             double beside = 0.0;     ///< distance from a clear piece within which surfaces are queried, in m
-            Path clear{};            ///< start of a piece without contact, in the body's coordinates
+            Path clear{};            ///< piece without contact, or its beginning, in the body's coordinates
         };
         std::vector<BodyId> near;
         std::vector<NearBody> bodies;

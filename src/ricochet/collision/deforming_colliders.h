@@ -28,7 +28,7 @@ public:
     [[nodiscard]] DeformedTriangle triangle_at(SurfaceId surface, double time) const {
         return mesh_with(surface).triangle_at(surface, time);
     }
-    /// Returns the time of the first key of any mesh after a time, in s, or infinity without one.
+    /// Returns the time of the first key of any mesh after a time, in s, or infinity if there is none.
     [[nodiscard]] double next_key(double time) const;
 
     /// Begins a step over [begin, end], in s. "The step" below is this one.
@@ -37,16 +37,15 @@ public:
     void near(const Box3& box, std::vector<SurfaceId>& out) const;
     /// Returns true if all meshes stay out of the box during the step.
     [[nodiscard]] bool stay_out(const Box3& box) const;
-    /// Returns the largest offset of the meshes that may come into the box, in m, or 0 if all stay out.
+    /// Returns the largest contact offset of the meshes that may come into the box, in m, or 0 if all stay out.
     [[nodiscard]] double offset_in(const Box3& box) const;
 
     /// Returns true if a space-time segment stays clear of all triangles. A sphere that starts nearer to a triangle
     /// than its radius must not come nearer.
     [[nodiscard]] bool is_segment_free(const StoredPosition& from, const StoredPosition& to, double radius) const;
-    /// Does the same for a particle whose time has stalled since an earlier step. The segment may then contain keys:
-    /// each corner moves straight from its position at the first time to that at the second, wherever it was in
-    /// between. Only the centre of a sphere is certified. At the end the sphere must not overlap any surface more than
-    /// at the start.
+    /// Does the same for a particle whose time has stalled since an earlier step. The segment may then contain key
+    /// times. Each corner is assumed to move straight from its position at the first time to that at the second. Only
+    /// the centre of a sphere is certified. At the end the sphere must not overlap any surface more than at the start.
     [[nodiscard]] bool is_late_segment_free(const StoredPosition& from, const StoredPosition& to, double radius) const;
     /// Appends the triangles nearest to a position at a time, in s, which may be outside the step. It appends at most
     /// `most`, the nearest first.

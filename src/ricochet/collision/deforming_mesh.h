@@ -30,8 +30,8 @@ struct StoredPosition {
 /// Returns the box of a segment, grown by the radius of the sphere that moves along it.
 [[nodiscard]] Box3 box_of(const StoredPosition& from, const StoredPosition& to, double radius);
 
-/// A triangle of a deforming mesh at one time, in the world. The functions with names of CollisionWorld do the same. A
-/// triangle without area consists of edges only, and has the z axis as its normal.
+/// A triangle of a deforming mesh at one time, in the world. Functions with the names of CollisionWorld's functions do
+/// the same. A triangle without area consists of edges only, and has the z axis as its normal.
 struct DeformedTriangle {
     Vec3 a;
     Vec3 b;
@@ -41,7 +41,7 @@ struct DeformedTriangle {
     [[nodiscard]] double signed_distance_from(const Vec3& p) const;
     [[nodiscard]] Vec3 unit_normal() const;
     [[nodiscard]] int side_of(const Vec3& p) const;
-    /// Returns the displacement, in m, of the triangle's point nearest to p until it is deformed further.
+    /// Returns the displacement, in m, of the triangle's point nearest to p, from this shape to the shape `later`.
     [[nodiscard]] Vec3 displacement_of(const Vec3& p, const DeformedTriangle& later) const;
 };
 
@@ -62,10 +62,10 @@ public:
     /// Returns the contact offset on the mesh, in m. It follows from the largest coordinate of the vertices in the
     /// step.
     [[nodiscard]] double offset() const { return offset_; }
-    /// Returns a tree of boxes that contain each solid triangle during the step.
+    /// Returns a tree of boxes, one per solid triangle, that contain the triangles during the step.
     [[nodiscard]] const BoxTree& tree() const { return tree_; }
-    /// Returns the number of triangles with three different vertices. Others never have an area, and collisions ignore
-    /// them.
+    /// Returns the number of triangles with three different vertices. Other triangles never have an area, and
+    /// collisions ignore them.
     [[nodiscard]] std::size_t solid_count() const { return solid_.size(); }
     [[nodiscard]] SurfaceId solid_surface(std::size_t k) const { return first_surface_ + solid_[k]; }
 
@@ -76,11 +76,11 @@ public:
     [[nodiscard]] MovingTriangle between(SurfaceId surface, double begin, double end) const;
     /// Returns the velocities of the corners, in m/s.
     [[nodiscard]] std::array<Vec3, 3> corner_velocities(SurfaceId surface, double time) const;
-    /// Motion of a triangle and of its point nearest to a position. At a key, to rounding, it is the motion after the
-    /// key.
+    /// Motion of a triangle and of its point nearest to a position. At a key time, up to rounding, it is the motion
+    /// after the key.
     struct Motion {
         Vec3 velocity;  ///< velocity of that point, in m/s
-        Vec3 turning;   ///< angular velocity of the triangle, in rad/s: of its normal and about its normal
+        Vec3 turning;   ///< angular velocity of the triangle, in rad/s, including rotation about its normal
     };
     [[nodiscard]] Motion motion_at(SurfaceId surface, const Vec3& p, double time) const;
 
@@ -88,7 +88,7 @@ public:
     /// a key lies between the two times and the triangle is near.
     [[nodiscard]] bool is_free(SurfaceId surface, const StoredPosition& from, const StoredPosition& to,
                                double radius) const;
-    /// See DeformingColliders.
+    /// See DeformingColliders::is_late_segment_free().
     [[nodiscard]] bool is_late_segment_free(const StoredPosition& from, const StoredPosition& to, double radius) const;
 
 private:
@@ -100,7 +100,7 @@ private:
     std::vector<Triangle> triangles_;
     std::vector<std::uint32_t> solid_;  ///< triangles with three different vertices
     std::shared_ptr<const MeshMotion> motion_;
-    double begin_ = 0.0;  ///< s, of the step
+    double begin_ = 0.0;  ///< s, start of the step
     double end_ = 0.0;
     MeshMoment at_begin_;
     MeshMoment at_end_;

@@ -47,7 +47,7 @@ double DeformingSweep::certified_radius(SurfaceId surface, const MovingTriangle&
     return distance < radius_ - tolerance_ ? 0.0 : std::min(radius_, distance);
 }
 
-/// Returns the contact of a meeting, or nothing if the particle does not approach the triangle there.
+/// Returns the contact at a meeting, or nothing if the particle does not approach the triangle at that time.
 std::optional<DeformingSweep::Hit> DeformingSweep::hit_at(SurfaceId surface, const MovingTriangle& triangle,
                                                           const Meeting& meeting) const {
     const double time = meeting.part * path_.duration;
@@ -56,7 +56,8 @@ std::optional<DeformingSweep::Hit> DeformingSweep::hit_at(SurfaceId surface, con
     const Vec3 p = path_.position(time);
     const ClosestPointOnTriangle closest = closest_point_on_triangle(p, a, b, c);
     const Vec3 weights = barycentric_coordinates(closest, a, b, c);
-    // The corner velocities come from the keys, because differences over a short piece of the path are mostly rounding.
+    // The corner velocities come from the keys, because differences over a short piece of the path consist mostly of
+    // rounding errors.
     const double middle = 0.5 * times_.begin + 0.5 * times_.end;
     const auto [u, v, w] = deforming_.mesh_with(surface).corner_velocities(surface, middle);
     const Vec3 relative = path_.velocity(time) - (weights.x * u + weights.y * v + weights.z * w);
@@ -78,8 +79,8 @@ std::optional<DeformingSweep::Hit> DeformingSweep::meet(SurfaceId surface, const
     double from = 0.0;
     const double distance = distance_at_start(path_, triangle);
     if (radius == 0.0) {
-        // A point that leaves the triangle is not hit again at once. The certificate finds hits that this short time
-        // hides.
+        // A point that leaves the triangle must not be hit again at once, so the sweep skips a short time. The
+        // certificate finds hits within this time.
         const bool touches = distance <= kTouchingOffsets * deforming_.mesh_with(surface).offset();
         if (touches && !hit_at(surface, triangle, {0.0, deformed_at(triangle, 0.0).side_of(path_.c[0])}))
             from = kShortLeave;
@@ -95,7 +96,8 @@ std::optional<DeformingSweep::Hit> DeformingSweep::meet(SurfaceId surface, const
     return hit;
 }
 
-/// Returns all hits at the earliest time. Hits with equal normals count once, also an edge beside its face.
+/// Returns all hits at the earliest time. Hits with equal normals count once, including those of an edge beside its
+/// face.
 std::optional<Contact> DeformingSweep::first_of(std::vector<Hit> hits) const {
     if (hits.empty()) return std::nullopt;
     const auto earlier = [](const Hit& a, const Hit& b) {

@@ -23,12 +23,12 @@ struct PathTimes {
 /// Sweep of one path. All arguments must outlive the object.
 class DeformingSweep {
 public:
-    /// `held` and `beside` have the meaning of the members of ContactQuery with these names.
+    /// `supports` and `beside`: see the members of ContactQuery with these names.
     DeformingSweep(const DeformingColliders& deforming, const Path& path, const PathTimes& times, double radius,
                    std::span<const SurfaceId> supports, double beside);
 
-    /// Returns the first contact with any of the triangles, in times of the path. Calls near(triangle) for each
-    /// triangle near the path, in their order.
+    /// Returns the first contact with any of the triangles. Its time is in s along the path. Calls near(triangle) for
+    /// each triangle near the path, in the given order.
     template <class Near>
     [[nodiscard]] std::optional<Contact> first_contact(std::span<const SurfaceId> triangles, const Near& near) const {
         std::vector<Hit> hits;

@@ -37,8 +37,8 @@ double time_free_of_plane(const Path& path, const Plane& plane, double margin) {
     const double height = dot(plane.normal, start);
     const double side = height < 0.0 ? -1.0 : 1.0;
     // The margin covers rounding of the path only. The height also has an error proportional to the distance along the
-    // plane. It is computed by a difference, a product and two sums: less than five roundings of each component. Local:
-    // an error bound of this arithmetic.
+    // plane. The height is computed by a difference, a product and two sums: less than five roundings of each
+    // component. Local: an error bound of this arithmetic.
     constexpr double kHeightError = 16.0 * 0x1p-53;
     const double g0 = side * height - margin - kHeightError * dot(abs(plane.normal), abs(start));
     const double g1 = side * dot(plane.normal, path.c[1]);
@@ -65,8 +65,8 @@ double time_outside(const Path& path, const Box3& box) {
     return longest;
 }
 
-// Within a time t the particle moves at most v t + a t^2 / 2. The step solves for the clearance, in the form without
-// cancellation.
+// Within a time t the particle moves at most v t + a t^2 / 2. The step is the time t at which this distance equals the
+// clearance, computed without cancellation.
 double time_clear_of_field(const Path& path, const DistanceField& field, double margin, double from) {
     double acceleration = 2.0 * length(path.c[2]);
     if (path.degree > 2) {
@@ -103,11 +103,11 @@ double time_of_leaving(const Path& path, const Box3& box) {
 
 namespace {
 
-/// Steps of conservative advancement of a sphere towards a triangle. Fewer: more time steps query the sphere for
-/// nothing. More: each costs some hundred operations. Local, because only the cost depends on it.
+/// Number of steps of conservative advancement of a sphere towards a triangle. Fewer: more time steps make unnecessary
+/// queries for the sphere. More: each costs some hundred operations. Local, because only the cost depends on it.
 constexpr int kAdvancementSteps = 4;
 
-/// Advancement stops when the last step has gained less than this part of a time step. Local, because only the cost
+/// Advancement stops when the last step has gained less than this fraction of a time step. Local, because only the cost
 /// depends on it.
 constexpr double kLittleOfAStep = 0x1p-5;
 
@@ -160,7 +160,7 @@ LookAheadOutcome LookAheadQuery::run() {
     return {};
 }
 
-// A shape is either cleared by a path or not, so the search halves the duration until the shape is cleared.
+// The test of a shape does not return a time, so the search halves the duration until the path is clear of the shape.
 void LookAheadQuery::advance_past_planes_and_shapes() {
     double& free_until = result_.free_until;
     free_until = ahead_.path.duration;
@@ -187,7 +187,7 @@ bool LookAheadQuery::boxes_hold(double duration) const {
     return kPathRounding * largest_coordinate(shortened(ahead_.path, duration)) <= margins_.bvh->slack();
 }
 
-// A straight path that leaves all triangles behind is free for good.
+// A straight path that has left the box around all triangles stays free.
 bool LookAheadQuery::query_line() {
     const double end = std::min(end_of_query(), time_of_leaving(ahead_.path, box_of_interest()));
     if (!(ahead_.margin < margins_.curvature) || !boxes_hold(end)) return false;
@@ -197,10 +197,10 @@ bool LookAheadQuery::query_line() {
     return true;
 }
 
-// While a parabola is beyond one side of all triangles, it needs no query. Sphere tracing crosses free space. Near
-// triangles, the broad phase is queried piece by piece. Over one piece, three curves stay within the margin that the
-// boxes leave: the query's path, the look-ahead's path and their chords of a step. If such a piece is shorter than a
-// step, only the free space beyond the path's end is traced.
+// While a parabola is beyond one face of the box around all triangles, it needs no query. Otherwise sphere tracing
+// crosses free space, and near triangles the broad phase is queried piece by piece. Over one piece, three curves stay
+// within the margin of the boxes: the query's path, the look-ahead's path and their chords of a step. If such a piece
+// is shorter than a step, only the free space beyond the path's end is traced.
 bool LookAheadQuery::query_parabola() {
     const double outside = time_outside(ahead_.path, box_of_interest());
     if (outside >= ahead_.least) {
@@ -230,7 +230,7 @@ bool LookAheadQuery::query_parabola() {
 }
 
 // A triangle that is near only after the end of the query's path is no candidate of that path. A triangle that is near
-// only before that end, or is left behind, does not matter afterwards.
+// only before that end, or is left behind, is no candidate of later steps.
 void LookAheadQuery::query_piece(double from, double to) {
     const double span = to - from;
     const Tube tube(ahead_.path.position(from), ahead_.path.position(to), margin_until(to),
@@ -249,7 +249,7 @@ void LookAheadQuery::query_piece(double from, double to) {
     });
 }
 
-/// Returns the distance, in m, from the look-ahead's path within which triangles matter until a time.
+/// Returns the distance, in m, from the look-ahead's path within which triangles must be considered until a given time.
 double LookAheadQuery::margin_until(double time) const {
     const Box3& box = world_.triangle_bounds();
     const double largest =
@@ -277,7 +277,7 @@ void LookAheadQuery::add_approach(std::uint32_t triangle, double enter, double l
 /// triangle, that time is too early. Conservative advancement improves it: along a direction that separates sphere and
 /// triangle, the distance shrinks no faster than the sphere moves against the direction (B. Mirtich, "Impulse-based
 /// Dynamic Simulation of Rigid Body Systems", PhD thesis, Berkeley 1996, section 2.3). The speed along a direction is
-/// linear in time, so it is largest at an end.
+/// linear in time, so it is largest at an end of the interval.
 double LookAheadQuery::time_of_approach(std::uint32_t triangle, double enter, double last) const {
     const Path& path = ahead_.path;
     const auto [a, b, c] = world_.corners_of_triangle(triangle);
@@ -301,7 +301,7 @@ double LookAheadQuery::time_of_approach(std::uint32_t triangle, double enter, do
 void LookAheadQuery::keep_candidates(double until) {
     result_.candidates_until = until;
     result_.candidates = ContactCandidates::none();
-    // The triangle that is hit first shortens the tests of the others.
+    // Sorts by time, because an early hit shortens the tests of the remaining triangles.
     std::sort(scratch_.approaches.begin(), scratch_.approaches.end(),
               [](const auto& a, const auto& b) { return a.begin < b.begin; });
     for (const auto& [triangle, begin] : scratch_.approaches) {
@@ -311,9 +311,9 @@ void LookAheadQuery::keep_candidates(double until) {
 
 /// Returns true if a triangle can be dropped because a sphere leaves it behind at the given speed, in m/s.
 ///
-/// Reason: the following steps are rounded. Each must lead away from the triangle by more than the rounding error, or
-/// rounding could lead the sphere back through the triangle. A safe position elsewhere on the path must not lie beyond
-/// the triangle either.
+/// Reason: the positions after the following steps are rounded. Each step must lead away from the triangle by more than
+/// the rounding error. Otherwise rounding could move the sphere back through the triangle. A safe position elsewhere on
+/// the path must not lie beyond the triangle either.
 bool LookAheadQuery::is_left_behind(double separating_speed) const {
     if (separating_speed == 0.0 || ahead_.path.degree > 1 || !(margins_.radius > ahead_.margin)) return false;
     return separating_speed * ahead_.least > kPathRounding * largest_coordinate(ahead_.path);

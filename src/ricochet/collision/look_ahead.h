@@ -29,9 +29,9 @@ namespace ricochet {
 /// duration, and 0 if the path begins inside. The result may be too short, never too long.
 [[nodiscard]] double time_outside(const Path& path, const Box3& box);
 
-/// Returns the time, in s, until which the path from `from` on is certainly farther than `margin` from the triangles of
-/// the distance field. It is at most the path's duration, and `from` if the field gives no bound. Method: sphere
-/// tracing (J. C. Hart, The Visual Computer 12, 1996).
+/// Returns the time, in s, until which the path, from time `from` on, is certainly farther than `margin`, in m, from
+/// the triangles of the distance field. It is at most the path's duration, and `from` if the field gives no bound.
+/// Method: sphere tracing (J. C. Hart, The Visual Computer 12, 1996).
 [[nodiscard]] double time_clear_of_field(const Path& path, const DistanceField& field, double margin, double from);
 
 /// Returns a time, in s, after which a straight path certainly stays out of the box. It is at most the path's duration,
@@ -42,16 +42,17 @@ namespace ricochet {
 struct LookAhead {
     Path path;  ///< a line or parabola that begins with the query's path
     /// Clearance, in m, > 0. Surfaces must stay farther away than the radius plus this margin, except surfaces left
-    /// behind. It covers the distance of the true trajectory, the query's path and its chords of a step from `path`.
+    /// behind. It covers the distance from `path` of three curves: the true trajectory, the query's path and the chords
+    /// of the steps.
     double margin = 0.0;
-    double least = 0.0;   ///< in s along the path, one step; a shorter free time is not worth the work
+    double least = 0.0;   ///< in s along the path, one step; a shorter free time is not worth the cost
     double beyond = 0.0;  ///< in s; triangles that come near within this time after the free time are also found
 };
 
 /// Result of a look-ahead. Times are in s along the look-ahead's path.
 struct LookAheadResult {
-    /// Time until which no surface is nearer to the path than the radius plus the margin. Surfaces that a sphere leaves
-    /// behind for good are excepted. At most the query's duration if looking ahead is not worth the work.
+    /// Time until which no surface is nearer to the path than the radius plus the margin. Surfaces that a sphere has
+    /// left behind are ignored. The time is at most the query's duration if looking ahead is not worth the cost.
     double free_until = 0.0;
     /// Triangles, other than those left behind, that come near between the end of the query's path and
     /// candidates_until. The time candidates_until is at most `beyond` later than free_until.
@@ -62,8 +63,8 @@ struct LookAheadResult {
 /// Result of a look-ahead, and the tests that remain.
 struct LookAheadOutcome {
     LookAheadResult result;
-    /// The set of triangles tested against the query's own path. If empty, they still have to be tested, and nothing is
-    /// known beyond the path.
+    /// The set of triangles tested against the query's own path. If empty, the triangles still have to be tested, and
+    /// nothing is known beyond the path.
     std::optional<CandidateSet> tested;
 };
 

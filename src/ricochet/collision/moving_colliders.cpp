@@ -66,12 +66,12 @@ Box3 swept_box(const FrameTree& frames, std::size_t frame, const Box3& box, doub
     Box3 all;
     int count = 0;
     for (double from = begin; from < end || from == begin; ++count) {
-        // The bounds are valid over many keys too.
+        // The bounds are also valid over many keys, so the last part may contain several.
         const double to = count < kMostKeysInStep ? std::min(end, frames.next_key(frame, from)) : end;
         const MotionBounds bounds = frames.bounds(frame, from, to);
         Box3 part = placed(frames.at(frame, from), box);
         part.include(placed(frames.at(frame, to), box));
-        // A point with an acceleration of at most a deviates from the chord of its path by at most a h^2 / 8. Its
+        // A point with accelerations up to a value a deviates from the chord of its path by at most a h^2 / 8. Its
         // distance from the nearer end is at most half the path length that its speed allows.
         const double h = to - from;
         const double by_acceleration = (bounds.origin[2] + reach * bounds.rotation[2]) * h * h / 8.0;

@@ -3,7 +3,7 @@
 ///
 /// In its own frame a collider never moves, so every predicate and hierarchy works there. Only the path of a particle
 /// changes: y(t) = M(t)^-1 x(t). MovingPose::local_position() defines the local position of a stored position x at a
-/// time t. No crossing is lost between the two coordinates, because all tests use this definition.
+/// time t. No crossing is lost between the two coordinate systems, because all tests use this definition.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,8 @@ inline constexpr BodyId kWorldBody = 0xFFFFFFFFU;
 /// during begin_step() and prepare_radius().
 class MovingColliders {
 public:
-    /// `at_rest` is the world body. `frames` must contain all frames that its list names. Both must outlive the object.
-    /// Throws InputError like CollisionWorld, and for a frame that does not exist.
+    /// `at_rest` is the world body. `frames` must contain all frames to which the colliders refer. Both must outlive
+    /// the object. Throws InputError like CollisionWorld, and for a frame that does not exist.
     explicit MovingColliders(const CollisionWorld& at_rest, std::shared_ptr<const FrameTree> frames = nullptr,
                              double chord_margin = kChordMargin);
 
@@ -61,7 +61,7 @@ public:
     [[nodiscard]] MovingPose pose(BodyId body, double time) const {
         return has_frame(body) ? pose_of(body, time) : MovingPose{};
     }
-    /// Converts a position of the world to a body's coordinates at a time, in s.
+    /// Converts a position in the world to a body's coordinates at a time, in s.
     [[nodiscard]] Vec3 local_position(BodyId body, const Vec3& world, double time) const {
         return has_frame(body) ? pose_of(body, time).local_position(world) : world;
     }
@@ -98,8 +98,8 @@ public:
         bodies_[body].has_jumped = has_jumped;
         bodies_[body].angular_momentum = angular_momentum;
     }
-    /// Returns the difference of the angular velocity of a free body at a time, in s, from that of its path, in rad/s.
-    /// The path has the angular velocity of its middle throughout. Impacts with that value would not conserve energy.
+    /// Returns the angular velocity of a free body at a time, in s, relative to that of its planned path, in rad/s. The
+    /// path has one angular velocity throughout, that of its middle. Impacts with this value would not conserve energy.
     [[nodiscard]] Vec3 turning_beside_path(BodyId body, double time) const;
     [[nodiscard]] bool is_dynamic(BodyId body) const { return has_frame(body) && bodies_[body].mobility.has_value(); }
     /// Returns the mobility of a dynamic body at a time, in s, in world coordinates. Requires is_dynamic().
@@ -140,7 +140,7 @@ private:
 
 /// Returns a box in the world that contains a body's box, given in its own coordinates, at all times in [begin, end],
 /// in s. It encloses straight paths between the positions at both ends and at keys, grown by a bound on the deviation
-/// from them.
+/// from these paths.
 [[nodiscard]] Box3 swept_box(const FrameTree& frames, std::size_t frame, const Box3& box, double begin, double end);
 
 }  // namespace ricochet

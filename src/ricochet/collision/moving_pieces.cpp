@@ -10,7 +10,7 @@
 namespace ricochet {
 namespace {
 
-/// Least distance of a cut at a deforming mesh's key from the ends of a path, as a fraction of the path's duration.
+/// Least time between a cut at a deforming mesh's key and an end of the path, as a fraction of the path's duration.
 /// Local: a guard against pieces without duration.
 constexpr double kLeastPart = 0x1p-45;
 
@@ -50,8 +50,8 @@ MovingPieces::MovingPieces(const SurfacesInTime& surfaces, const ContactQuery& q
     cut();
 }
 
-/// Finds the bodies near the path, by the path's box in the world. A path in the frame of a body has a box of all
-/// positions that it can reach.
+/// Finds the bodies near the path by a box around the path in the world. For a path in the frame of a body, the box
+/// contains all positions that the path can reach.
 void MovingPieces::find_bodies() {
     const MovingColliders& bodies = surfaces_.bodies();
     Box3 box = reach_of(query_.path, query_.radius);
@@ -71,7 +71,7 @@ void MovingPieces::find_bodies() {
     if (!bodies.deforming().empty()) find_deforming(box);
 }
 
-/// Finds the deforming triangles near the path, and near all positions beside the path that can be tried.
+/// Finds the deforming triangles near the path, and near all positions beside the path that may be tested.
 void MovingPieces::find_deforming(const Box3& box) {
     const DeformingColliders& deforming = surfaces_.bodies().deforming();
     deforming_offset_ = deforming.offset_in(box);
@@ -112,8 +112,8 @@ double MovingPieces::tolerance_of(BodyId body) const {
     return found == lists_.bodies.end() ? tolerance_in(body) : found->tolerance;
 }
 
-/// Returns the deviation of local positions from the path in a frame, and of safe positions from the path, in m. It
-/// comes from rounding of the world's coordinates and of the frames' origins.
+/// Returns the largest deviation, in m, of local positions from the path in a frame, and of safe positions from the
+/// path. It results from rounding of the world's coordinates and of the frames' origins.
 double MovingPieces::rounding() const {
     Vec3 largest = abs(start_.world) + abs(query_.path.end - query_.path.c[0]);
     const MovingColliders& bodies = surfaces_.bodies();
@@ -129,7 +129,7 @@ double MovingPieces::rounding() const {
     return kLargestContactOffsetUlps / kContactOffsetUlps * std::max(contact_offset(largest), deforming_offset_);
 }
 
-/// Cuts the path at the keys of all bodies nearby, and evenly between the keys.
+/// Cuts the path at the keys of all nearby bodies. If deforming meshes are near, also cuts it evenly between the keys.
 void MovingPieces::cut() {
     const double duration = query_.path.duration;
     const PathClock& clock = surfaces_.clock();
@@ -206,7 +206,7 @@ std::vector<double> MovingPieces::deforming_keys() const {
     return keys;
 }
 
-/// Returns the time along the path of a key. It is inside the path even if rounding would put it at an end.
+/// Returns the time of a key along the path. The result is inside the path even if rounding would put it at an end.
 double MovingPieces::path_time_of(double key) const {
     const PathClock& clock = surfaces_.clock();
     const double least = kLeastPart * query_.path.duration;

@@ -1,9 +1,9 @@
 /// \file
 /// Division of a path among moving colliders into pieces, and the bodies and deforming triangles near it.
 ///
-/// In the coordinates of a turning body the path is no polynomial. It is cut into pieces on which the cubic Hermite
-/// path is within kMovingPathTolerance of the true path. The bound is h^4 / 384 times a bound of the fourth derivative
-/// (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", section II.6).
+/// In the coordinates of a rotating body the path is no polynomial. The path is cut into pieces on which the cubic
+/// Hermite path is within kMovingPathTolerance of the true path. The bound is h^4 / 384 times a bound of the fourth
+/// derivative (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", section II.6).
 ///
 /// Pieces end exactly at the keys of deforming meshes, and positions there are stored with the key's time. No segment
 /// therefore contains a key.
@@ -32,7 +32,7 @@ class MovingPieces {
 public:
     using NearBody = ContactScratch::Sweep::NearBody;
 
-    /// `query` is for a path in the frame of `surfaces`, and `start` its stored start. The object owns the scratch
+    /// `query` is for a path in the frame of `surfaces`, and `start` is its stored start. The object owns the scratch
     /// lists during its lifetime.
     MovingPieces(const SurfacesInTime& surfaces, const ContactQuery& query, const PathPoint& start,
                  ContactScratch& scratch);
@@ -40,9 +40,9 @@ public:
     MovingPieces(const MovingPieces&) = delete;
     MovingPieces& operator=(const MovingPieces&) = delete;
 
-    /// Bodies near the path, in ascending order.
+    /// Returns the bodies near the path, in ascending order.
     [[nodiscard]] std::span<NearBody> bodies() { return lists_.bodies; }
-    /// Triangles of deforming meshes near the path, in ascending order.
+    /// Returns the triangles of deforming meshes near the path, in ascending order.
     [[nodiscard]] std::span<const SurfaceId> deforming() const { return deforming_; }
     /// Returns the largest allowed deviation, in m, of a piece from the true path in the coordinates of a body.
     [[nodiscard]] double tolerance_of(BodyId body) const;
@@ -52,7 +52,7 @@ public:
 
     /// Returns the times along the path at which it is cut, in s, from 0 to its duration.
     [[nodiscard]] std::span<const double> cuts() const { return lists_.cuts; }
-    /// Returns the number of fine pieces in a span of time, in s.
+    /// Returns the number of fine pieces into which a span of time, in s, is divided.
     [[nodiscard]] double count_within(double span) const;
     /// Returns the clock of a piece of the path. `next`: index of the first cut at or after its end.
     [[nodiscard]] PathClock clock_of(double from, double to, std::size_t next) const;
@@ -79,7 +79,7 @@ private:
     std::vector<double> times_;      // simulation times of the cuts, in s; empty without deforming meshes nearby
     double rate_ = 0.0;              // fine pieces per second
     double deforming_offset_ = 0.0;  // largest contact offset of deforming meshes that may be near, in m
-    double beside_ = 0.0;            // in m
+    double beside_ = 0.0;            // in m, result of beside()
 };
 
 }  // namespace ricochet

@@ -13,15 +13,15 @@
 namespace ricochet {
 namespace {
 
-/// Number of Newton steps in the search for the true time of an impact. Each squares the error.
+/// Number of Newton steps in the search for the true time of an impact. Each step squares the error.
 constexpr int kNewtonSteps = 4;
 
-/// Largest length, relative to a fine piece, of the rest of a path that is still taken as one fine piece. It covers
-/// rounding. Local: it covers rounding, and only the cost depends on it.
+/// Largest duration, relative to a fine piece, of the rest of a path that is still swept as one fine piece. It exceeds
+/// 1 to cover rounding. Local, because only the cost depends on it.
 constexpr double kAlmostOne = 1.0 + 1e-9;
 
-/// Largest length of a piece without contacts, in fine pieces. The error of its cubic is larger by the fourth power of
-/// this number. Local, because boxes are enlarged by that error, so only the cost depends on it.
+/// Largest duration of a piece without contacts, in fine pieces. The error of its cubic is larger by the fourth power
+/// of this number. Local, because boxes are enlarged by that error, so only the cost depends on it.
 constexpr double kLongestPiece = 16.0;
 
 /// Largest number of fine pieces in sequence before a longer one is tried again.
@@ -46,7 +46,7 @@ Path straight_path(const Vec3& from, const Vec3& to, double duration) {
     return path;
 }
 
-/// Makes a contact the first one if it is earlier, or merges it if it is simultaneous.
+/// Replaces `first` by a contact that is earlier, or adds the surfaces of a contact that is simultaneous.
 void merge(Contact contact, std::optional<Contact>& first) {
     if (!first) {
         first = contact;
@@ -64,8 +64,8 @@ void merge(Contact contact, std::optional<Contact>& first) {
 
 }  // namespace
 
-/// Returns the end of the next piece, in s along the path: the next cut, or before it the end of a fine piece or of a
-/// longer piece without contacts.
+/// Returns the end of the next piece, in s along the path. It is the next cut, or the end of a fine piece or of a
+/// longer piece without contacts before that cut.
 double MovingSweep::end_of_piece(const PathPoint& start) {
     is_clear_ = false;
     const double cut = pieces_.cuts()[next_];
@@ -84,9 +84,9 @@ double MovingSweep::end_of_piece(const PathPoint& start) {
     return begin_ + fine;
 }
 
-/// Returns the time, in s along the path, until which no surface of other frames comes near it. If that is within less
-/// than a fine piece, returns the start of the piece. The search extends as far as the errors of the cubics are within
-/// the margins of all bodies' boxes.
+/// Returns the time, in s along the path, until which no surface of other frames comes near the path. If this time is
+/// less than a fine piece away, returns the start of the piece. The search ends where the errors of the cubics exceed
+/// the margins of the bodies' boxes.
 double MovingSweep::clear_until(const PathPoint& start, double fine) {
     double longest = kLongestPiece * fine;
     for (MovingPieces::NearBody& body : pieces_.bodies()) {
@@ -96,7 +96,7 @@ double MovingSweep::clear_until(const PathPoint& start, double fine) {
             error = std::min(error, (world.bvh_for(query_.radius).margin() - query_.radius) / 32.0);
         }
         longest = std::min(longest, longest_cubic(error, body.fourth));
-        // The pieces cut from it can deviate as much from the true path, on its other side.
+        // The pieces cut from the cubic can deviate by the same amount from the true path, on its other side.
         body.beside = beside_in_bodies() + 2.0 * error;
     }
     if (!(longest >= 2.0 * fine)) return begin_;
@@ -126,7 +126,7 @@ Path MovingSweep::path_in(BodyId body, const SurfacesInTime& surfaces, const Pat
     const Vec3 leaving = surfaces.velocity_in(body, {start.position, 0.0, start.world}, piece_.velocity(0.0));
     if (!(piece_.duration > 0.0)) return line_path(from, leaving, 0.0);
     // If the piece is shorter than the resolution of the clock, the body jumps from one pose to the next. A cubic with
-    // the velocities at both ends would then bend without limit.
+    // the velocities at both ends could then have any curvature.
     if (piece_.duration <= ulp(clock_.end)) return straight_path(from, to, piece_.duration);
     const Vec3 arriving =
         surfaces.velocity_in(body, end, piece_.velocity(piece_.duration), SurfacesInTime::Limit::before);
@@ -190,7 +190,7 @@ void MovingSweep::meet_deforming(const SurfacesInTime& surfaces, const PathPoint
     if (contact) take(*contact, kWorldBody, surfaces, first);
 }
 
-/// Takes a contact that was found in the coordinates of a body, or of the world.
+/// Merges a contact that was found in the coordinates of a body, or of the world, into `first`.
 void MovingSweep::take(Contact contact, BodyId body, const SurfacesInTime& surfaces,
                        std::optional<Contact>& first) const {
     for (int k = 0; k < contact.count; ++k) {

@@ -2,11 +2,11 @@
 /// First contact of a path among moving colliders: piece by piece, in the frame of each body near the path.
 ///
 /// MovingPieces divides the path into pieces, which are cubics in the coordinates of each body. The cubics are swept
-/// like all paths, and the time of an impact is then found again on the true path. The remaining error can only move a
-/// grazing contact. Nothing passes through a surface, because every segment is certified for stored positions.
+/// like all paths, and the time of an impact is then refined on the true path. The remaining error can only affect
+/// grazing contacts. Nothing passes through a surface, because every segment is certified for stored positions.
 ///
-/// If this takes many pieces, a longer cubic is tested first, with a margin for its larger error. The path is one piece
-/// until a surface of another frame comes near this cubic.
+/// If this takes many pieces, a longer cubic is tested first, with a margin for its larger error. The path is then
+/// swept as one piece up to the time at which a surface of another frame comes near this cubic.
 ///
 /// Deforming meshes are tested in the world, where path and vertices follow polynomials.
 #pragma once
@@ -45,7 +45,8 @@ public:
     [[nodiscard]] const Path& path() const { return piece_; }
     [[nodiscard]] const PathClock& clock() const { return clock_; }
 
-    /// Returns the first contact of the whole path, in its times, for a particle that never leaves the path.
+    /// Returns the first contact of the whole path for a particle that never leaves the path. The contact's time is
+    /// along the whole path.
     [[nodiscard]] std::optional<Contact> first_contact();
 
 private:

@@ -14,7 +14,8 @@
 
 namespace ricochet {
 
-/// Returns the largest magnitude, in m, of a coordinate that the terms of a path reach.
+/// Returns a bound, in m, of the magnitudes of all coordinates on a path: the largest sum of the magnitudes of its
+/// terms.
 [[nodiscard]] double largest_coordinate(const Path& path);
 
 /// Margins of a query: the distances from a path within which it considers surfaces.
@@ -25,7 +26,7 @@ struct QueryMargins {
     double radius;           ///< in m, 0 for points
     double beside;           ///< in m, ContactQuery::beside
     double tolerance;        ///< in m, sphere_tolerance() of the path's start; 0 for points
-    double largest;          ///< in m, largest coordinate that the path reaches
+    double largest;          ///< in m, largest_coordinate() of the path
     double slack;            ///< in m, largest distance of certified positions from the path
     double curvature;        ///< in m, margin that the boxes leave for the path's curvature; 0 if boxes_hold is false
     /// True if the boxes cover the path's rounding and `beside`. If false, every triangle near the path's own box is a

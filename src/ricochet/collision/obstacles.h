@@ -9,11 +9,11 @@
 
 namespace ricochet {
 
-/// Tests the ends of a particle's steps that all begin at one position. A step is blocked in two cases. Either the
-/// closed segment between the two positions intersects a surface, which is decided exactly for planes and triangles. Or
-/// the sphere at the end is nearer to a surface than its radius less half of sphere_tolerance(). A surface that the
-/// sphere overlaps at the beginning blocks only if the sphere comes even nearer. Surfaces that a sphere grazes between
-/// the two positions are missed: only the segment of its centre is tested.
+/// Tests end positions of a particle's steps that all begin at one position. A step is blocked if the closed segment
+/// between the two positions intersects a surface. This is decided exactly for planes and triangles. A step is also
+/// blocked if the sphere at its end is nearer to a surface than its radius minus half of sphere_tolerance(). A surface
+/// that the sphere overlaps at the beginning blocks only if the sphere comes even nearer. Surfaces that a sphere grazes
+/// between the two positions are missed, because only the segment of its centre is tested.
 class Obstacles {
 public:
     /// The radius must have been prepared (CollisionWorld::prepare_radius).
@@ -40,8 +40,8 @@ private:
     double radius_;
 };
 
-/// Returns true if no surface blocks a space-time segment of a sphere, or of a point (radius 0). Colliders with a frame
-/// and those at rest are tested as Obstacles does, in their own coordinates. Exact.
+/// Returns true if no surface blocks a space-time segment of a sphere, or of a point (radius 0). Rigid colliders are
+/// tested by Obstacles in their own coordinates. Deforming meshes are tested exactly, see DeformingColliders.
 [[nodiscard]] bool is_segment_free(const MovingColliders& bodies, const StoredPosition& from, const StoredPosition& to,
                                    double radius);
 /// Does the same for a segment of a stalled particle, see DeformingColliders::is_late_segment_free().

@@ -10,7 +10,8 @@
 namespace ricochet {
 namespace {
 
-/// Calls within = consider(surface, distance) for all planes and shapes, and for the triangles within that distance.
+/// Calls consider(surface, distance) for all planes and shapes, and for the triangles within the distance `within`, in
+/// m. Each call returns the new value of `within`.
 template <class Consider>
 void visit_distances(const CollisionWorld& world, const Vec3& center, double within, const Consider& consider) {
     for (const auto& plane : world.planes()) {
@@ -29,7 +30,7 @@ void visit_distances(const CollisionWorld& world, const Vec3& center, double wit
     });
 }
 
-/// Returns the triangles of deforming meshes that come within a distance in this step.
+/// Returns the triangles of deforming meshes that come within a distance of a point in this step.
 std::vector<SurfaceId> near_deforming(const MovingColliders& bodies, const Vec3& center, double within) {
     std::vector<SurfaceId> near;
     bodies.deforming().near(ball_box(center, within), near);

@@ -1,5 +1,5 @@
 /// \file
-/// Tests whether a sphere at rest overlaps a surface, for particles that are born.
+/// Tests whether a sphere at rest overlaps a surface, for newly spawned particles.
 #pragma once
 
 #include <optional>
@@ -12,19 +12,20 @@ namespace ricochet {
 /// A surface that a sphere overlaps.
 struct Overlap {
     SurfaceId surface = 0;
-    /// Distance of the surface from the centre, in m. The sphere reaches behind the surface by its radius less this.
+    /// Distance of the surface from the centre, in m. The sphere reaches behind the surface by its radius minus this
+    /// distance.
     double distance = 0.0;
 };
 
-/// Returns the nearest surface that a sphere overlaps. A sphere overlaps a surface that is nearer to the centre than
-/// the radius by more than sphere_tolerance(). If several have the same distance, the one with the smallest number is
-/// returned. Returns nothing for a sphere that at most touches, for a point (radius 0), and for a centre that is not
+/// Returns the nearest surface that a sphere overlaps. A sphere overlaps a surface if the centre's distance is smaller
+/// than the radius by more than sphere_tolerance(). If several have the same distance, the one with the smallest number
+/// is returned. Returns nothing for a sphere that at most touches, for a point (radius 0), and for a centre that is not
 /// finite. A sphere wholly inside a solid overlaps nothing. The broad phase proposes the triangles in one point query.
 /// Can be called from any number of threads.
 [[nodiscard]] std::optional<Overlap> deepest_overlap(const CollisionWorld& world, const Vec3& center, double radius);
 
 /// Returns the bodies with a frame that a sphere, or a point (radius 0), may touch or overlap at a time, in s. The list
-/// is in the order of the bodies and may contain more than those.
+/// is in the order of the bodies and may contain other bodies, too.
 [[nodiscard]] std::vector<BodyId> bodies_near(const MovingColliders& bodies, const Vec3& center, double radius,
                                               double time);
 
@@ -37,15 +38,15 @@ struct Overlap {
 /// none.
 [[nodiscard]] std::optional<Vec3> off_bodies(const MovingColliders& bodies, const Vec3& center, double time);
 
-/// Returns the surfaces, by number, that a sphere, or a point (radius 0), touches. A surface is touched if its distance
-/// differs from the radius by at most `reach`, in m. Surfaces that a point lies exactly on are left out. Needs one
-/// point query.
+/// Returns the surfaces that a sphere, or a point (radius 0), touches, in the order of their numbers. A surface is
+/// touched if its distance differs from the radius by at most `reach`, in m. Surfaces on which a point lies exactly are
+/// left out. Needs one point query.
 [[nodiscard]] std::vector<SurfaceId> surfaces_touched(const CollisionWorld& world, const Vec3& center, double radius,
                                                       double reach);
 
-/// Returns the radius, in m, of the largest ball about the centre with which an overlapping sphere can collide as if it
-/// overlapped nothing. It is one contact offset less than the distance. It is 0, for a point, if the ball is so small
-/// that rounding of positions would matter.
+/// Returns the radius, in m, of the core of an overlapping sphere. The core is a concentric ball that overlaps nothing
+/// and collides in place of the sphere. Its radius is one contact offset less than the distance of the overlapped
+/// surface. The result is 0, for a point, if the core is so small that rounding of positions would matter.
 [[nodiscard]] double core_radius(const Overlap& overlap, const Vec3& center, double radius);
 
 }  // namespace ricochet

@@ -31,7 +31,7 @@ AffineMap checked_map(const ColliderDescription& collider, const AffineMap& map)
 }
 
 /// Throws InputError if a surface is too small after its placement. `extents`, in m, are its sizes along its own axes.
-/// A scale of zero is left to checked_map().
+/// checked_map() reports a scale of zero.
 void require_size(const ColliderDescription& collider, const AffineMap& map, const Vec3& extents) {
     for (int axis = 0; axis < 3; ++axis) {
         const double scale = max_abs(Vec3{map.row_x[axis], map.row_y[axis], map.row_z[axis]});
@@ -45,7 +45,7 @@ void require_size(const ColliderDescription& collider, const AffineMap& map, con
     }
 }
 
-/// Throws InputError if a mesh is too small after its placement. A mesh may be flat, so its largest extent counts for
+/// Throws InputError if a mesh is too small after its placement. A mesh may be flat, so its largest extent is used for
 /// all axes.
 void require_size(const ColliderDescription& collider, const AffineMap& map, const std::vector<Vec3>& vertices) {
     Box3 box;
@@ -88,7 +88,7 @@ Box3 box_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles)
     return all;
 }
 
-/// Returns 1 for each triangle without area, else 0.
+/// Returns 1 for each triangle without area, otherwise 0.
 PageVector<std::uint8_t> degenerate_flags(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
     PageVector<std::uint8_t> flags(triangles.size(), 0);
     parallel_for_blocks(triangles.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {

@@ -26,9 +26,9 @@ public:
     /// collider if a placement is singular or a coordinate exceeds kLargestCoordinate.
     PlacedColliders(std::shared_ptr<ColliderList> colliders, std::string_view frame);
 
-    /// Colliders of all frames.
+    /// Returns the colliders of all frames.
     [[nodiscard]] const std::shared_ptr<ColliderList>& list() const { return list_; }
-    /// Colliders of all frames, and the numbers of their surfaces.
+    /// Returns the descriptions of the colliders of all frames.
     [[nodiscard]] const std::vector<ColliderDescription>& colliders() const { return list_->all(); }
     [[nodiscard]] std::size_t surface_count() const { return list_->surface_count(); }
     [[nodiscard]] SurfaceName name_of(SurfaceId surface) const { return list_->name_of(surface); }
@@ -105,11 +105,11 @@ public:
     [[nodiscard]] std::optional<TriangleMesh> mesh_of(std::size_t collider) const;
     /// Returns the number of surfaces of a collider: its triangles, 1 for a plane or ball, 3 for a cylinder.
     [[nodiscard]] std::size_t surface_count_of(std::size_t collider) const;
-    /// Box of the frame's colliders, without the planes.
+    /// Returns the box of the frame's colliders, without the planes.
     [[nodiscard]] const Box3& bounds() const { return bounds_; }
-    /// Box of all triangles.
+    /// Returns the box of all triangles.
     [[nodiscard]] const Box3& triangle_bounds() const { return triangle_bounds_; }
-    /// Number of triangles without area, which collisions ignore.
+    /// Returns the number of triangles without area, which collisions ignore.
     [[nodiscard]] std::size_t degenerate_triangles() const { return degenerate_count_; }
 
 protected:

@@ -8,7 +8,8 @@
 namespace ricochet {
 namespace {
 
-/// Follows a path: halves it until its chords are free, and stops at the first blocked chord.
+/// Follows a path in certified chords. It halves the path until its chords are free, and stops at a blocked chord that
+/// cannot be halved further.
 class PathFollower {
 public:
     PathFollower(const NearSurfaces& near, const Path& path, const PathPoint& start, std::vector<PathPoint>& chain)
@@ -42,7 +43,7 @@ private:
     CertifiedPath followed_;
 };
 
-/// The normals along which a particle is moved off the surfaces that it has hit. At most three matter in space.
+/// The normals along which a particle is moved off the surfaces that it has hit. At most three are used.
 struct Normals {
     std::array<Vec3, 3> n;
     int count = 0;
@@ -58,7 +59,7 @@ struct Normals {
 };
 
 /// Returns the shortest displacement that increases the distance from every plane by one unit (the minimum-norm
-/// solution of n_i . d = 1). Returns the sum of the normals if the planes are too sharp or too parallel for that.
+/// solution of n_i . d = 1). Returns the sum of the normals if this displacement would be too long.
 Vec3 escape_direction(const Normals& normals) {
     const auto& n = normals.n;
     if (normals.count == 1) return n[0];
@@ -79,9 +80,9 @@ Vec3 correction_at(const NearSurfaces& near, const PathPoint& at, const Contact&
     return (near.radius() - near.nearest(surface, at).distance) * contact.first().normal;
 }
 
-/// Returns the corrected position on the path at the contact. Two positions are not corrected. One belongs to a sphere
-/// that overlaps. The other is near the origin, and its distance from a large triangle has a rounding error larger than
-/// the query has covered.
+/// Returns the position on the path at the contact, moved by correction_at(). The position is not moved if a sphere
+/// overlaps the surface, or if the correction exceeds half the slack of the query. The latter occurs near the origin,
+/// where the distance from a large triangle has a large rounding error.
 Vec3 position_at(const NearSurfaces& near, const PathPoint& on_path, const Contact& contact) {
     const Vec3& position = on_path.position;
     const Vec3 correction = correction_at(near, on_path, contact);

@@ -1,7 +1,7 @@
 /// \file
 /// Safe position of a particle after an impact: a representable point just before the surface. It is reached along
 /// certified segments, none of which intersects any surface. Every segment is checked exactly against the surfaces near
-/// the path. Particles only ever move along such segments, so it is a theorem about the chain of stored positions that
+/// the path. Particles move only along such segments. It is therefore proven, for the chain of stored positions, that
 /// no particle passes through a surface.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace ricochet {
 
-/// The part of a path that certified segments could follow.
+/// Result of following a path in certified segments.
 struct CertifiedPath {
     PathPoint reached;  ///< the last certified position
     std::optional<SurfaceId>
@@ -20,8 +20,8 @@ struct CertifiedPath {
 };
 
 /// Follows `path` from its start to `target`, its position at time `until`, in certified segments. If the chord is
-/// free, it is the only segment. Otherwise the arc is halved, down to kCertificateDepth. `chain` is replaced by the
-/// certified positions in order, the start first.
+/// free, it is the only segment. Otherwise the arc is halved repeatedly, up to the depth kCertificateDepth. `chain` is
+/// replaced by the certified positions in order, the start first.
 [[nodiscard]] CertifiedPath follow_path(const NearSurfaces& near, const Path& path, double until, const Vec3& target,
                                         std::vector<PathPoint>& chain);
 
@@ -29,18 +29,19 @@ struct CertifiedPath {
 struct SafePosition {
     PathPoint reached;
     bool stayed = false;  ///< true: no certified position nearer to the surface than the path's start was found
-    std::optional<SurfaceId> blocker;  ///< surface that blocks the path at `reached`, if that is before the contact
+    std::optional<SurfaceId> blocker;  ///< surface that blocks the path at `reached`, if `reached` is before the
+                                       ///< contact
 };
 
-/// Returns a certified position near the contact. It is off the surfaces of the contact along their normals by
+/// Returns a certified position near the contact. It is moved off the surfaces of the contact along their normals, by
 /// contact_offset(), or by more if that fails. If no such position is free, it is the last certified position on the
 /// path. The start of the path is always valid. `chain`: as for follow_path().
 [[nodiscard]] SafePosition find_safe_position(const NearSurfaces& near, const Path& path, const Contact& contact,
                                               std::vector<PathPoint>& chain);
 
-/// Returns a position for a particle that was put exactly on surfaces. It is one contact offset off them, on the side
-/// that their normals point to. The segment to it leaves these surfaces and intersects no other. `near` is that of a
-/// path that starts at p. Returns nothing if p is on no surface or no position was found.
+/// Returns a position for a particle that was put exactly on surfaces. The position is at least one contact offset away
+/// from them, on the side to which their normals point. The segment to it leaves these surfaces and intersects no
+/// other. `near` is that of a path that starts at p. Returns nothing if p is on no surface or no position was found.
 [[nodiscard]] std::optional<Vec3> step_off(const NearSurfaces& near, const Vec3& p);
 
 /// Returns the contact with the surface that blocks a certificate, if root finding found no contact. Rounding can let

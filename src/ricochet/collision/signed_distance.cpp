@@ -9,8 +9,8 @@
 namespace ricochet {
 namespace {
 
-/// Returns true if no triangle in a box can be nearer to p than the given squared distance, however distances are
-/// rounded. Their rounding error is less than 2^-48 of the distance from the box's farthest corner.
+/// Returns true if no triangle in a box can be nearer to p than the given squared distance, whatever the rounding of
+/// the distances. Their rounding error is less than 2^-48 of the distance from the box's farthest corner.
 bool is_farther(const Box3& box, const Vec3& p, double squared) {
     const Vec3 below = box.lower - p;
     const Vec3 above = p - box.upper;
@@ -56,7 +56,7 @@ std::uint32_t SignedDistance::mesh_of_triangle(std::uint32_t triangle) const {
     return static_cast<std::uint32_t>(after - meshes_.begin() - 1);
 }
 
-/// Visits triangles near p. Without culling it visits every triangle, as the reference of tests.
+/// Visits triangles near p. Without culling it visits every triangle, as a reference for tests.
 template <class Visit>
 void SignedDistance::visit_near(const Vec3& p, double within, Visit&& visit) const {
     if (world_.culls()) {
@@ -169,8 +169,8 @@ std::optional<SurfacePoint> SignedDistance::nearest_of_shape(std::uint32_t index
     return if_within(found, within);
 }
 
-/// Over a face, the distance from its plane is the accurate one. If p lies on the surface, the offset to p has no
-/// direction. The pseudonormal replaces it, or the triangle's normal if the pseudonormal is zero.
+/// Over a face, the distance from its plane is used, because it is more accurate. If p lies on the surface, the offset
+/// to p has no direction. The direction is then the pseudonormal, or the triangle's normal if the pseudonormal is zero.
 std::optional<SurfacePoint> SignedDistance::nearest_of_mesh(const Candidate& candidate, const Vec3& p,
                                                             double within) const {
     const Mesh& mesh = meshes_[candidate.mesh];

@@ -3,7 +3,7 @@
 ///
 /// Planes, balls and cylinders use their formulas. Meshes use the nearest triangle, whose side is decided by
 /// pseudonormals (geometry/mesh/pseudonormals.h). The side is correct for meshes that bound a solid and are wound
-/// outward. For other meshes it is the side of the nearest sheet, and it has no meaning at open edges.
+/// outward. For other meshes it is the side of the nearest sheet, and it is not defined at open edges.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +26,7 @@ struct SurfacePoint {
     int side = 0;
     SurfaceId surface = 0;  ///< nearest surface; one of them if there are several
     std::uint32_t collider = 0;
-    bool on_rim = false;  ///< true if the nearest feature is an open edge or its end, where the side has no meaning
+    bool on_rim = false;  ///< true if the nearest feature is an open edge or its end, where the side is not defined
 };
 
 /// Signed distances of one collision world. Immutable; safe from any number of threads. Results depend neither on the
@@ -42,21 +42,21 @@ public:
     /// than `within` (in m, >= 0, may be infinite) or if the collider has no triangle with an area.
     [[nodiscard]] std::optional<SurfacePoint> closest(std::uint32_t collider, const Vec3& p, double within) const;
 
-    /// Appends the closest point of every collider that has one within that distance, in ascending order of the
+    /// Appends the closest point of every collider that is at most `within` away, in m, in ascending order of the
     /// colliders. Allocates memory only when `out` grows, and once per thread.
     void near(const Vec3& p, double within, std::vector<SurfacePoint>& out) const;
 
     /// Returns the number of the collider's surfaces that the closed segment [p, q] intersects. Both ends must be
     /// finite. A segment through an edge intersects both its triangles. For shapes with a formula it is 1 if the ends
-    /// are on different sides, and 2 if the segment goes in and out. Whether it is 0 is exact for planes and meshes.
-    /// For shapes it errs towards an intersection, by some 2^-90.
+    /// are on different sides, and 2 if the segment enters and leaves the shape. The decision whether there is an
+    /// intersection is exact for planes and meshes. For shapes it errs on the side of an intersection, by about 2^-90.
     [[nodiscard]] std::size_t count_met(std::uint32_t collider, const Vec3& p, const Vec3& q) const;
 
 private:
     using Kind = CollisionWorld::Kind;
 
     /// The triangles of a collider: [first_triangle, end_triangle) of the world's triangles. The pseudonormals are
-    /// indexed from the first.
+    /// indexed from the first of these triangles.
     struct Mesh {
         std::uint32_t collider;
         std::uint32_t first_triangle;

@@ -1,5 +1,5 @@
 /// \file
-/// Surfaces near a path in other frames than the path's own, and deforming meshes: certificates of space-time segments.
+/// Certificates of space-time segments: surfaces near a path in other frames than the path's own, and deforming meshes.
 #pragma once
 
 #include <optional>
@@ -10,13 +10,13 @@
 
 namespace ricochet {
 
-/// Returns the distance, in m, that a particle attached to a frame must keep from surfaces. Reason: the rotation of a
-/// dynamic body has accumulated the rounding errors of all its turns. Conversion to the world and back therefore gives
-/// another position. The result is 0 if that error is within contact_offset().
+/// Returns the distance, in m, that a particle attached to a frame must keep from surfaces. Reason: the orientation of
+/// a dynamic body accumulates rounding errors. Conversion to the world and back therefore gives a different position.
+/// The result is a multiple of this error.
 [[nodiscard]] double offset_for_carrying(const MovingPose& pose, const Vec3& local_position);
 
 /// Results of queries in the frames of other bodies near one path, or near a piece of it. In each frame the path is a
-/// cubic of its own. Stored positions are converted by MovingPose::local_position().
+/// different cubic. Stored positions are converted by MovingPose::local_position().
 class SurfacesInOtherFrames {
 public:
     /// A body near the path.
@@ -28,11 +28,11 @@ public:
     /// A triangle of a deforming mesh.
     struct Deforming {
         SurfaceId surface = 0;
-        double radius = 0.0;  ///< distance that segments keep, up to sphere_tolerance() of each segment, in m
+        double radius = 0.0;  ///< distance that segments keep, minus sphere_tolerance() of each segment, in m
     };
 
-    /// `start` is the stored start of the path. Bodies are added in ascending order of their queries, triangles in
-    /// ascending order of their numbers.
+    /// `start` is the stored start of the path. Bodies must be added in the order of their queries, and triangles in
+    /// ascending order.
     SurfacesInOtherFrames(const SurfacesInTime& surfaces, const PathPoint& start)
         : surfaces_(surfaces), start_(start) {}
 
@@ -51,7 +51,7 @@ public:
     [[nodiscard]] const SurfacesInTime& surfaces() const { return surfaces_; }
     [[nodiscard]] const PathPoint& start() const { return start_; }
 
-    /// Like is_segment_free(), segment_blocker(), overlap_deepened_by(), covers_chord() and offset_at() of
+    /// Equivalents of is_segment_free(), segment_blocker(), overlap_deepened_by(), covers_chord() and offset_at() of
     /// NearSurfaces, for the surfaces of other frames.
     [[nodiscard]] bool are_free(const PathPoint& p, const PathPoint& q) const;
     [[nodiscard]] std::optional<SurfaceId> blocker(const PathPoint& p, const PathPoint& q) const;

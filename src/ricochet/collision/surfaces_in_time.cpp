@@ -90,7 +90,7 @@ Vec3 SurfacesInTime::velocity_of(SurfaceId surface, const PathPoint& at) const {
         const MovingPose pose = bodies_->pose(reference_, time);
         velocity = pose.local_direction(world - carried(pose, at.world));
     }
-    // The frame's own velocity is subtracted already. Only the axes change.
+    // The frame's own velocity has already been subtracted, so only the axes of the deformation velocity change.
     if (deforms(surface)) velocity += direction_from(kWorldBody, deformation_of(surface, at).velocity, at.time);
     return velocity;
 }

@@ -1,6 +1,6 @@
 /// \file
 /// Surfaces of all colliders at the times of a path: at rest, in moving frames, and of deforming meshes. Also the
-/// positions on that path: as stored, in world coordinates, and in the coordinates of its frame.
+/// positions on that path: as stored in world coordinates, and in the coordinates of its frame.
 #pragma once
 
 #include <algorithm>
@@ -14,14 +14,14 @@ namespace ricochet {
 struct PathPoint {
     Vec3 position;      ///< in m, in the frame of the path
     double time = 0.0;  ///< in s along the path
-    Vec3 world{};       ///< in m, as stored; `position` is its local position in the frame
+    Vec3 world{};       ///< in m, as stored in the world; `position` is its local position in the frame
 };
 
 /// Conversion from the times of a path to simulation times. Times are in s.
 struct PathClock {
     double begin = 0.0;     ///< simulation time at the start of the path
     double end = 0.0;       ///< simulation time at the end of the path
-    double base = 0.0;      ///< simulation time that path times are added to
+    double base = 0.0;      ///< simulation time to which path times are added
     double offset = 0.0;    ///< start of the path within a longer path of which it is a piece
     double duration = 0.0;  ///< duration of the path
 
@@ -36,14 +36,14 @@ struct PathClock {
     }
 };
 
-/// Answers questions about surfaces at the times of a path. A surface is at rest, moves with the frame of its body, or
-/// belongs to a deforming mesh: its body decides. Results are in the frame of the path, which is that of a body with a
-/// frame, or the world (kWorldBody). Times `s` are in s along the path.
+/// Queries of surfaces at the times of a path. Depending on its body, a surface is at rest, moves with the frame of the
+/// body, or belongs to a deforming mesh. Results are in the frame of the path, which is that of a body with a frame, or
+/// the world (kWorldBody). Times `s` are in s along the path.
 class SurfacesInTime {
 public:
     SurfacesInTime(const MovingColliders& bodies, BodyId reference, const PathClock& clock)
         : bodies_(&bodies), reference_(reference), clock_(clock) {}
-    /// Creates the surfaces at a single simulation time, in s. All times along the path stand for it.
+    /// Creates the surfaces at a single simulation time, in s. All times along the path are converted to it.
     SurfacesInTime(const MovingColliders& bodies, BodyId reference, double time)
         : SurfacesInTime(bodies, reference, {time, time, time, 0.0, 0.0}) {}
 
@@ -53,7 +53,7 @@ public:
 
     // Positions and directions.
 
-    /// Returns the stored position nearest to a point of the frame.
+    /// Returns the stored position nearest to a point in the frame of the path.
     [[nodiscard]] PathPoint point_at(const Vec3& p, double s) const;
     /// Returns the path point of a stored position.
     [[nodiscard]] PathPoint stored(const Vec3& world, double s = 0.0) const {
@@ -74,7 +74,7 @@ public:
     [[nodiscard]] Vec3 velocity_in(BodyId body, const PathPoint& at, const Vec3& velocity,
                                    Limit limit = Limit::after) const;
 
-    // One surface. The functions with names of CollisionWorld do the same.
+    // One surface. Functions with the names of CollisionWorld's functions do the same.
 
     [[nodiscard]] CollisionWorld::Nearest nearest(SurfaceId surface, const PathPoint& p) const;
     [[nodiscard]] double signed_distance_from(SurfaceId surface, const PathPoint& p) const;
@@ -86,7 +86,7 @@ public:
     [[nodiscard]] double offset_at(SurfaceId surface, const PathPoint& p) const;
     /// Returns the velocity, in m/s, of the surface's material point at a point of the world.
     [[nodiscard]] Vec3 velocity_of(SurfaceId surface, const PathPoint& at) const;
-    /// Returns the angular velocity of the surface there, in rad/s.
+    /// Returns the angular velocity of the surface at that point, in rad/s.
     [[nodiscard]] Vec3 angular_velocity_of(SurfaceId surface, const PathPoint& at) const;
 
 private:

@@ -27,7 +27,8 @@ ExportCollider collider_of(const RunFolder& folder, const std::filesystem::path&
     collider.number = static_cast<std::uint32_t>(index_of_collider_file(name).value_or(0));
     collider.moves = info != nullptr && info->moves;
     if (info != nullptr) collider.looks = info->looks;
-    // The mesh comes from the first frame, because the collider's file uses local coordinates.
+    // ExportColliders takes the mesh of a moving collider from the first frame, because the collider's file uses local
+    // coordinates.
     if (collider.moves) return collider;
     VtkPolyData data = read_vtp(file);
     collider.mesh = {std::move(data.points), std::move(data.triangles)};

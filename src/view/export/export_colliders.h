@@ -18,8 +18,8 @@ struct ExportCollider {
     std::uint32_t number = 0;  ///< index in the run
     bool moves = false;        ///< moves or deforms
     ColliderLooks looks{};
-    /// Mesh in world coordinates, in m. The mesh of a moving collider has its position in the first frame. A plane is a
-    /// square.
+    /// Mesh in world coordinates, in m. The mesh of a moving collider has its position in the first frame. A plane is
+    /// represented by a square.
     TriangleMesh mesh;
 };
 

@@ -246,7 +246,7 @@ private:
 /// Sums over the triangles of all colliders, for the notes of the report.
 struct TriangleSums {
     ImpulseSizes sizes;         ///< sums of the magnitudes of impulses, by impacts and by lasting contact
-    std::optional<double> end;  ///< time, in s, at which the totals end, if it is before the last frame
+    std::optional<double> end;  ///< time, in s, up to which the totals count; set only if it is before the last frame
 };
 
 TriangleSums write_triangles(const std::filesystem::path& path, const RunFolder& folder) {

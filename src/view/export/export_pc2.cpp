@@ -144,7 +144,7 @@ public:
     }
 
 private:
-    // Writes all meshes. Moving meshes have their position of the first sample.
+    // Writes all meshes. Moving meshes are at their positions in the first sample.
     void write_meshes(const ExportFolder& target) {
         if (survey_.same_particles) {
             const TriangleMesh points{read_frame(survey_.frames.front().path).points, {}};

@@ -38,8 +38,8 @@ struct ColliderPart {
     double roughness = 1.0;     ///< 0 (mirror) to 1 (matt); set by the collider's appearance settings
     bool has_pattern = true;    ///< a plane shows lines; set by the collider's appearance settings
     std::optional<Vec3> color;  ///< in linear light; set by the collider's appearance settings
-    /// Mesh in world coordinates, in m. The mesh of a moving collider has its position in the first frame. A plane is a
-    /// square.
+    /// Mesh in world coordinates, in m. The mesh of a moving collider has its position in the first frame. A plane is
+    /// represented by a square.
     TriangleMesh mesh;
     std::optional<Vec3> plane_normal;  ///< set only for a plane at rest
     PartMap hits;

@@ -18,7 +18,7 @@ namespace ricochet {
 
 /// Level of detail of a run's page.
 struct PageDetail {
-    int position_bits = 16;  ///< bits per coordinate, over the longest edge of the box
+    int position_bits = 16;  ///< bits per coordinate; the 2^bits levels span the longest edge of the box
     /// Bits per attribute, over its range: 8 or 16; see attribute_bits() for the exception.
     int value_bits = 16;
     std::size_t every_frame = 1;  ///< every n-th frame is kept; the last frame is always kept

@@ -7,7 +7,7 @@
 namespace ricochet {
 namespace {
 
-constexpr std::size_t kFewFrames = 50;    // least number of frames until particles are thinned
+constexpr std::size_t kFewFrames = 50;    // least number of frames that are kept before particles are thinned
 constexpr double kFewParticles = 2000.0;  // least number of particles after thinning
 constexpr std::array kBits = {std::array{16, 16}, std::array{16, 8}, std::array{14, 8}, std::array{12, 8},
                               std::array{11, 8}};  // bits of positions and of attributes

@@ -120,8 +120,8 @@ public:
           steep_{std::vector<float>(width_), std::vector<float>(width_), std::vector<float>(width_)},
           weights_(width_) {}
 
-    // Processes rows at a distance of one step in sequence, because they share most of the rows that contain their
-    // taps.
+    // Filters the rows [begin, end). Rows that are `step_` apart are filtered one after the other. Most of their taps
+    // are in the same rows, which are then still in the cache.
     void rows(int begin, int end, NoisyPicture& target) {
         for (int first = begin; first < std::min(begin + step_, end); ++first) {
             for (int y = first; y < end; y += step_) row(y, target);

@@ -22,7 +22,7 @@ struct PixelFeatures {
     Float3 normal;          ///< zero if the pixel is empty
     Float3 albedo;          ///< colour of the surface; white if the pixel is empty
     float distance = 0.0F;  ///< distance from the camera, in m; 0 if the pixel is empty
-    /// Difference of `distance` between adjacent pixels that the inclination of the surface causes, in m.
+    /// Change of `distance` from one pixel to the next, in m, because the surface is inclined.
     float slope = 0.0F;
 };
 

@@ -143,7 +143,7 @@ void Painter::add_sky_light(std::span<Look> looks, const SunShadows* shadows) co
         }
     }
     ask_sun(std::span(asks.data(), count), shadows);
-    constexpr Vec3 kFarSky{0.22, 0.25, 0.30};  // light on the other surface that replaces all further bounces
+    constexpr Vec3 kFarSky{0.22, 0.25, 0.30};  // assumed light on the other surface, without sunlight
     for (std::size_t k = 0; k < count; ++k) {
         if (!others[k]) continue;
         whose[k]->sky = others[k]->emission + times(others[k]->color, asks[k].light + light_.sky_brightness * kFarSky);

@@ -156,7 +156,8 @@ public:
             view_.emplace(preview.spheres(), camera, options.width, options.height, WithinPixel::anywhere);
             if (!view_->pays()) view_.reset();
         }
-        // The grid of shadows takes up to 400 bytes per sphere. If the sun is wide, rays to it cross too many cells.
+        // Above these limits, rays find the shadows. The grid of shadows takes up to 400 bytes per sphere, and rays to
+        // a wide sun cross too many cells.
         constexpr std::size_t kMostSpheres = 500000;
         constexpr double kWidestSun = 0.1;
         if (preview.spheres().centers.size() > kMostSpheres || painter.sun_slope() > kWidestSun) return;

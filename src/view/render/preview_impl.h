@@ -51,7 +51,7 @@ struct Preview::Impl {
     std::vector<std::vector<Vec3>> sphere_ways;
     bool has_sphere_rays = false;
     LineGroup dark_lines, bright_lines;
-    std::vector<GlowingLine> glowing_lines;  // lamps of the glowing lines, in the order of bright_lines
+    std::vector<GlowingLine> glowing_lines;  // one per glowing line, in the order of bright_lines
     DrawnMesh cloth;
     ShapeCopies copies;
     bool has_moving = false;

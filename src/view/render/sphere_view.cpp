@@ -10,7 +10,8 @@ namespace ricochet {
 namespace {
 
 constexpr std::size_t kBlock = 1024;  // spheres per unit of parallel work
-// Largest sum of the pixels that spheres cover, relative to the pixels of the picture.
+// Largest ratio of the pixels that spheres cover, summed over all spheres, to the pixels of the picture. Above this
+// ratio, ray tracing is faster.
 constexpr double kMostCovered = 24.0;
 constexpr double kMargin = 0.01;  // margin of spots for rounding errors, in pixels
 

@@ -11,7 +11,8 @@ namespace ricochet {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-// Least magnitude of the tangent of a ray to the light; avoids a division by zero.
+// Least magnitude of `tangent` in GridWalk. Smaller values are replaced by this value, so that the inverse slope is
+// finite.
 constexpr double kFlat = 1e-12;
 constexpr double kEntries = 10.0;       // largest mean number of cells per sphere
 constexpr double kMostAcross = 2048.0;  // largest number of cells along an edge of the grid

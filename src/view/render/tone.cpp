@@ -12,9 +12,10 @@ namespace {
 
 long rounded_channel(double linear) { return std::lround(255.0 * srgb_from_linear(linear)); }
 
-// Lookup table for rounded_channel(), which avoids its power function. The table stores the smallest value of each
-// channel. It also divides 0..1 into cells and stores the channel at the lower end of each cell. Cells are narrower
-// than the interval of any channel, so a cell contains at most two channels.
+// Lookup table for rounded_channel(), which avoids its power function. For each channel value 0..255, the table stores
+// the smallest linear value that is rounded to it. The table also divides 0..1 into cells and stores the channel value
+// at the lower end of each cell. A channel value above 0 covers an interval of linear values that is wider than a cell.
+// A cell therefore contains at most two channel values.
 class ChannelTable {
 public:
     ChannelTable() {
@@ -38,7 +39,7 @@ private:
     static constexpr std::size_t kCells = 4096;  // a power of two, so that `inside * kCells` is exact at the cell
                                                  // boundaries
 
-    // Returns the smallest linear value whose channel is at least k.
+    // Returns the smallest linear value that is rounded to a channel value of at least k.
     static double start_of(long k) {
         const double about = linear_from_srgb((static_cast<double>(k) - 0.5) / 255.0);
         double below = about * (1.0 - 1e-9);

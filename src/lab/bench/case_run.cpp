@@ -252,7 +252,7 @@ std::vector<Flight> flights_of(const Particles& particles) {
     return flights;
 }
 
-/// Returns true if the references get the flights of the state before this step.
+/// Returns true if the references trace the flights of the state before this step. Such steps are evenly spaced.
 bool is_snapshot(std::uint64_t step, const Case& c) {
     const std::uint64_t snapshots = std::clamp<std::uint64_t>(kReferenceFlights / c.particles, 1, c.steps);
     return step == 0 || step * snapshots / c.steps != (step - 1) * snapshots / c.steps;
@@ -304,8 +304,8 @@ bool CaseRun::prepare(const Announce& announce) {
     if (!scout(announce, states)) return false;
     if (!announce("references", 0)) return false;
     reference_.emplace(*mesh_, states, NativeRays::BounceRules{case_.time_step, case_.restitution});
-    // Leaks are counted only for exact. Other responses let particles enter the wall, and flights of the references
-    // would start inside the wall.
+    // Leaks are counted only for the response `exact`. Other responses let particles enter the wall, and flights of the
+    // references would start inside the wall.
     const std::optional<Vec3> heart = heart_of(case_.ground);
     if (heart && case_.response == ResponseKind::exact) reference_->count_leaks(*mesh_, *heart);
     if (case_.moves == Moves::nothing) return true;
@@ -338,7 +338,7 @@ bool CaseRun::time_simulation(CaseTimes& times, const Announce& announce) {
         offset += bytes.size();
     });
     if (!announce("simulation", 1)) return false;
-    // Not timed, because the first step of a restored simulation queries every particle.
+    // This step is not timed, because the first step of a restored simulation queries every particle.
     if (case_.warm_up > 0) simulation.step();
     bool goes_on = true;
     const double seconds = time_of([&] {

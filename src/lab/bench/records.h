@@ -50,8 +50,8 @@ struct Field {
 using Record = std::vector<Field>;
 
 [[nodiscard]] Record record_of(const Row& row);
-/// Returns the same fields as for a Row, followed by fields that only files have. Fields that do not apply to files are
-/// empty.
+/// Returns all fields of a Row, followed by the fields that only measurements of mesh files have. Fields that do not
+/// apply to mesh files are empty.
 [[nodiscard]] Record record_of(const LoadRow& row);
 /// Returns fields that callers append to the fields of a row.
 [[nodiscard]] Record record_of(const Environment& environment);

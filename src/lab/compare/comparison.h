@@ -20,16 +20,16 @@ namespace ricochet {
 struct ComparisonRow {
     ResponseChoice response;
     double time_step = 0.0;  ///< in s
-    bool listed = true;      ///< false: row of exact that was not requested and only serves as divisor of ratios
+    bool listed = true;      ///< false: row of `exact` that was not requested; its time is only a divisor of ratios
     RunFigures figures;
     ReferenceErrors errors;
     RunCost cost;
-    /// Time step, in s, of the exact run whose time is the divisor of RunCost::ratio_at_equal_error. std::nullopt if no
-    /// exact run is as accurate.
+    /// Time step, in s, of the run with `exact` whose time is the divisor of RunCost::ratio_at_equal_error.
+    /// std::nullopt if no run with `exact` is as accurate.
     std::optional<double> equal_error_step;
 };
 
-/// Reference run for all errors: the response exact at a small time step.
+/// Reference run for all errors. It uses the response `exact` and a small time step.
 struct ComparisonReference {
     RunFigures figures;
     double energy_scale = 0.0;   ///< in J, divisor of energy errors

@@ -207,7 +207,7 @@ std::string comparison_json(const Comparison& comparison, const ComparisonSource
     json["settings"] = settings_json(comparison, source);
     json["reference"] = reference_json(comparison);
     json["rows"] = Json::array();
-    json["base"] = Json::array();  // rows of exact, if exact was not requested
+    json["base"] = Json::array();  // rows of `exact`, if `exact` was not requested
     for (const ComparisonRow& row : comparison.rows) {
         json[row.listed ? "rows" : "base"].push_back(row_json(row, comparison));
     }

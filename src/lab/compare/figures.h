@@ -89,10 +89,10 @@ struct RunCost {
     double seconds = kNoNumber;               ///< median of seconds_each
     double ns_per_particle_step = kNoNumber;  ///< time divided by the number of particle-steps
     double ns_per_contact = kNoNumber;        ///< time divided by the number of contacts; kNoNumber without contacts
-    /// Median over the repeats of the ratio to the time of exact at the same step.
+    /// Time divided by the time of the response `exact` at the same time step, as the median over the repeats.
     double ratio_at_equal_step = kNoNumber;
-    /// Ratio to the time of exact at the longest step with an error that is not larger, see equally_good(). kNoNumber
-    /// if there is no such step.
+    /// Time divided by the time of `exact` at the longest time step at which its error is not larger, see
+    /// equally_good(). kNoNumber if there is no such time step.
     double ratio_at_equal_error = kNoNumber;
 };
 

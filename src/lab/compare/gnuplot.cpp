@@ -131,7 +131,7 @@ int start(pid_t& process, const std::filesystem::path& folder, std::vector<std::
     posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
-    // So that Ctrl-C reaches only this process, which then stops gnuplot.
+    // Gnuplot gets its own process group, so that Ctrl-C reaches only this process, which then stops gnuplot.
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
     const int error = ::posix_spawnp(&process, "gnuplot", &actions, &attributes, pointers.data(), environ);
     posix_spawnattr_destroy(&attributes);

@@ -326,7 +326,8 @@ void add_impact_errors(const RunTrace& run, const RunTrace& reference, std::span
     }
     const auto all = std::count_if(reference.first_impact.begin(), reference.first_impact.end(),
                                    [](double time) { return !std::isnan(time); });
-    errors.impacts_missed += static_cast<std::uint64_t>(all) - matched;  // particles that do not exist in this run
+    // The reference's other impacts belong to particles that do not exist in this run.
+    errors.impacts_missed += static_cast<std::uint64_t>(all) - matched;
     errors.impact = spread_of(differences);
 }
 

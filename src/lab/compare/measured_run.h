@@ -25,8 +25,8 @@ struct ParticleKey {
     friend auto operator<=>(const ParticleKey&, const ParticleKey&) = default;
 };
 
-/// Data of a run for its comparison with the reference. Lists by particle have one entry per id and contain no
-/// histories.
+/// Data of a run for its comparison with the reference. Vectors of particle data have one entry per particle id, and
+/// not one per step.
 struct RunTrace {
     std::vector<double> times;    ///< in s, ascending: 0, and the end of every step
     std::vector<double> kinetic;  ///< in J, at `times`
@@ -70,15 +70,15 @@ struct TimedRun {
 /// Returns the median of a[k] / b[k] over the repeats k.
 [[nodiscard]] double ratio_of_times(const std::vector<double>& a, const std::vector<double>& b);
 
-/// Returns the row of exact with the longest time step whose error is not larger than the error of `row`. The error is
-/// the root mean square of ReferenceErrors::position. If this is missing in one of the two rows, the median of
-/// ReferenceErrors::impact is compared instead. Returns a null pointer if no row of exact is as accurate. `exact`
-/// contains the rows of exact in order of descending time step.
+/// Returns the row of the response `exact` with the longest time step whose error is not larger than the error of
+/// `row`. The error is the root mean square of ReferenceErrors::position. If this is missing in one of the two rows,
+/// the median of ReferenceErrors::impact is compared instead. Returns a null pointer if no row of that response is as
+/// accurate. `exact` contains the rows of that response in order of descending time step.
 [[nodiscard]] const ComparisonRow* equally_good(const ComparisonRow& row,
                                                 const std::vector<const ComparisonRow*>& exact);
 
-/// Computes the costs of a row from its times. `at_equal_step` is the row of exact at the same time step. `exact` is as
-/// for equally_good().
+/// Computes the costs of a row from its times. `at_equal_step` is the row of the response `exact` at the same time
+/// step. `exact` is the list that equally_good() takes.
 void settle_cost(ComparisonRow& row, const ComparisonRow& at_equal_step,
                  const std::vector<const ComparisonRow*>& exact);
 

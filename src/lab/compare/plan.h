@@ -42,9 +42,9 @@ inline constexpr std::uint32_t kMostRepeats = 1000;
 struct ComparisonPlan {
     std::vector<ResponseChoice> responses;  ///< in the requested order, without duplicates
     std::vector<double> time_steps;         ///< in s, descending, without duplicates
-    double reference_step = 0.0;            ///< in s, time step of the exact run that is the reference for all errors
-    std::uint32_t repeats = 3;              ///< number of timed runs per row
-    double shown_step = 0.0;                ///< in s, time step of the rows whose energy is drawn over time
+    double reference_step = 0.0;  ///< in s, time step of the run with `exact` that is the reference for all errors
+    std::uint32_t repeats = 3;    ///< number of timed runs per row
+    double shown_step = 0.0;      ///< in s, time step of the rows whose energy is drawn over time
 };
 
 /// Creates the plan of a request for a scene with these options. If default time steps exceed the duration, they are

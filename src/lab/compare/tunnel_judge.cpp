@@ -66,8 +66,8 @@ void TunnelJudge::add_step(std::span<const Violation> violations) {
 }
 
 // Each segment that crosses a shape enters it, leaves it, or passes through it. Entering and leaving change the side of
-// the particle. The particle is on another side after the step if and only if the number of these segments is odd. If
-// this does not hold, one of the segments passed through the shape.
+// the particle. If no segment passes through, the particle is on another side after the step if and only if the number
+// of segments is odd. If this does not match the verifier's report, at least one segment passed through the shape.
 void TunnelJudge::judge_shape(const Pair& pair, const Segments& segments, bool flipped) {
     std::size_t count = 0;
     for (const auto& [time, crossings] : segments) count += crossings.size();

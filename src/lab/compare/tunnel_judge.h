@@ -17,13 +17,13 @@
 
 namespace ricochet {
 
-/// Kinds of colliders. The verifier reports different violations for each kind.
+/// Kinds of colliders. The comment of each kind lists the violations that the verifier reports for it.
 enum class ColliderKind : std::uint8_t {
-    plane,  ///< changes of side; a segment crosses a plane at most once
-    /// Ball or cylinder: changes of side; at most one crossing per segment, even if the segment crosses twice.
+    plane,  ///< changes of side, and crossings; a segment crosses a plane at most once
+    /// Ball or cylinder: changes of side, and one crossing per segment, even if the segment crosses the surface twice.
     shape,
-    closed_mesh,  ///< changes of side, and every triangle that a segment crosses
-    open_mesh,    ///< only every triangle that a segment crosses
+    closed_mesh,  ///< changes of side, and one crossing for each triangle that a segment crosses
+    open_mesh,    ///< one crossing for each triangle that a segment crosses; no changes of side
 };
 
 [[nodiscard]] std::vector<ColliderKind> collider_kinds(const Simulation& simulation);

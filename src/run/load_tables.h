@@ -19,8 +19,8 @@ struct LoadRows {
     std::vector<ColliderTotals> totals;  ///< totals at the time `since`
 };
 
-/// Tables with one row for each collider and each body at every output time. A collider has rows only if it moves or
-/// its material moves.
+/// Tables with one row per output time for each body and for some colliders. A collider has rows only if it moves, or
+/// if the surface of its material moves, such as a conveyor belt.
 class LoadTables {
 public:
     /// rows: rows of the interrupted run that continues here.

@@ -381,7 +381,7 @@ bool are_behind(const RunFolder& folder, double time) {
     if (folder.frames.empty() || folder.frames.back().step == 0) return false;
     // The last step of a run can be shorter than the time step.
     const auto steps = static_cast<double>(folder.frames.back().step - 1);
-    // Local: bounds the rounding error of the product of steps and time step.
+    // Local, because it bounds only the rounding error of the product of steps and time step.
     constexpr double kRounding = 1e-9;
     return time < (1.0 - kRounding) * steps * folder.info.time_step;
 }

@@ -69,11 +69,12 @@ struct ColliderSummary {
     std::uint64_t triangles = 0;
     std::uint64_t hits = 0;
     Vec3 impulse;  ///< N s
-    /// Loads on a collider that moves or whose material moves; nothing for other colliders.
+    /// Loads on a collider that moves, or whose material has a moving surface, such as a conveyor belt. Nothing for
+    /// other colliders.
     std::optional<ColliderTotals> loads = {};
     Vec3 lasting_impulse = {};             ///< part of `impulse` that is not due to impacts, in N s
     ImpulseSizes sizes = {};               ///< impulses of its triangles, by origin
-    std::vector<GroupTotals> groups = {};  ///< totals of its triangles; empty if the mesh has no groups
+    std::vector<GroupTotals> groups = {};  ///< totals of each triangle group; empty if the mesh has no groups
 };
 
 /// Content of summary.json.

@@ -23,7 +23,7 @@ namespace {
 class SecondsTo {
 public:
     explicit SecondsTo(double& sum) : sum_(sum) {}
-    // Clamped, so that a clock that runs backwards adds nothing.
+    // Negative durations count as 0, although a steady clock should never run backwards.
     ~SecondsTo() { sum_ += std::max(0.0, std::chrono::duration<double>(Clock::now() - start_).count()); }
     SecondsTo(const SecondsTo&) = delete;
     SecondsTo& operator=(const SecondsTo&) = delete;

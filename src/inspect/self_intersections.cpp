@@ -40,8 +40,8 @@ public:
     }
 
 private:
-    // Each split halves the boxes, so fewer than 2^32 boxes give at most 32 levels. The stack contains at most one
-    // waiting node for each level.
+    // Each split divides the boxes of a node into two halves, so fewer than 2^32 boxes give at most 32 levels. The
+    // stack contains at most one waiting node for each level.
     static constexpr std::size_t kMaxLevels = 64;
 
     struct Node {

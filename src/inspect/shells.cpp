@@ -87,7 +87,7 @@ bool cross_properly(const TriangleMesh& mesh, std::uint32_t first, std::uint32_t
 /// moved slightly to both sides of the first triangle. The shell must contain both moved points, because a shell that
 /// only touches the triangle contains at most one.
 bool leads_into(const MeshInterior& shell, const TriangleMesh& mesh, std::uint32_t first, std::uint32_t second) {
-    // Local: a test position, not a tolerance.
+    // Local, because it is the offset of a test position and not a tolerance.
     constexpr double kBeside = 1e-6;  // fraction of the edge's length
     const auto& [a, b, c] = mesh.triangles[second];
     const Vec3& origin = mesh.vertices[a];
@@ -143,7 +143,7 @@ public:
 private:
     /// Returns two points close to the triangle's centroid, one on each side.
     [[nodiscard]] std::array<Vec3, 2> beside(std::uint32_t triangle) const {
-        // Local: a test position, not a tolerance.
+        // Local, because it is the offset of a test position and not a tolerance.
         constexpr double kBeside = 1e-6;  // fraction of the triangle's size
         const auto& [a, b, c] = joined_.triangles[triangle];
         const Vec3 normal = cross(joined_.vertices[b] - joined_.vertices[a], joined_.vertices[c] - joined_.vertices[a]);
@@ -166,7 +166,7 @@ struct ShellVolume {
     /// Returns 1 if the shell is wound outward and -1 if it is wound inward. Returns 0 if the sum is not larger than
     /// its rounding error, as for a flat shell.
     [[nodiscard]] int orientation() const {
-        // Local: bounds the rounding error of this sum.
+        // Local, because it bounds only the rounding error of this sum.
         constexpr double kRounding = 1e-12;  // far above the sum's rounding error
         if (!(std::fabs(sum) > kRounding * magnitude)) return 0;
         return sum > 0.0 ? 1 : -1;

@@ -185,7 +185,8 @@ std::string threads_axis(std::span<const Row> rows) {
         fmt::join(counts, ", "), *counts.begin() / kMargin, *counts.rbegin() * kMargin);
 }
 
-/// Returns a speedup plot. Each case has a solid curve, and a dashed curve for its bare rays.
+/// Returns a speedup plot. Each case has a solid curve for the simulation, and a dashed curve for the bare rays (Embree
+/// alone).
 std::string threads_plot(std::span<const Row> rows) {
     std::vector<std::string> names;
     for (const Row& row : rows) {

@@ -12,7 +12,7 @@
 
 namespace ricochet::cli {
 
-/// Returns the seconds since a time. The result is never negative, even if the clock was set back during a long run.
+/// Returns the seconds since a time. The result is never negative.
 [[nodiscard]] double seconds_since(std::chrono::steady_clock::time_point start);
 
 /// Progress of all processes of a run together.

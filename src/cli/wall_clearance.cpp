@@ -10,8 +10,8 @@
 namespace ricochet::cli {
 namespace {
 
-/// Largest number of moves per ball. Each move takes the ball off the nearest wall, or halves the previous move if a
-/// wall blocked it. Corners and gaps need several moves.
+/// Largest number of moves per ball. A move shifts the ball away from the nearest wall. If a wall blocked the previous
+/// move, the move undoes half of it. Corners and gaps need several moves.
 constexpr int kMoves = 16;
 /// Allowed penetration of a ball through a wall, relative to the ball's radius. The penetration is less than a pixel.
 constexpr double kPoke = 0.01;

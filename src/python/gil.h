@@ -20,7 +20,8 @@ void stay_if_ending();
 
 namespace detail {
 
-/// Scope that counts a thread while it runs C++ code without the GIL, or Python code that such C++ code has called.
+/// Scope in which a thread counts as busy with code of this module. The exit of the interpreter waits for such threads.
+/// The code is C++ code without the GIL, or Python code that such C++ code has called.
 class Beside {
 public:
     Beside();

@@ -95,8 +95,8 @@ public:
         look();
         return !has_error_;
     }
-    /// Returns false if the run must end and the step has continued for kPatience since then. Any thread may call it,
-    /// within a step.
+    /// Returns false if the run must end, and kPatience has passed since the check that decided this. Any thread may
+    /// call it, within a step.
     [[nodiscard]] bool goes_on_within() {
         look();
         return !has_error_ || Clock::now() < latest_;

@@ -25,8 +25,8 @@ Quaternion turn_of(const KeyPose& pose) {
     return {sine_of_turns(half + 0.25), (sine_of_turns(half) / size) * pose.axis};
 }
 
-/// Returns the smallest rotation that a quaternion describes, as an angle, in degrees, that grows over an interval. A
-/// whole turn becomes no rotation.
+/// Returns the smallest rotation that a quaternion describes. Its angle grows from 0 at time `from` to the full angle
+/// at time `to`. A whole turn becomes no rotation.
 KeyedRotation shortest_turn(Quaternion q, double from, double to) {
     if (q.w < 0.0) q = {-q.w, -q.v};
     const double sine = length(q.v);

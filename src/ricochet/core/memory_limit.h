@@ -10,7 +10,7 @@ namespace ricochet {
 
 /// Smallest of the memory limits of this process.
 struct MemoryLimit {
-    double bytes = 0.0;       ///< that the process may still allocate; infinity if no limit is known
+    double bytes = 0.0;       ///< number that the process may still allocate; infinity if no limit is known
     std::string_view source;  ///< name of the limit, for messages
 };
 

@@ -35,8 +35,8 @@ private:
 /// there is one block. A body that waits for its own tasks is not interrupted by another body on the same thread, so
 /// bodies may use thread_local memory.
 /// If bodies throw, the exception of the throwing block with the lowest number is rethrown, for any number of threads.
-/// By then all blocks with lower numbers have finished, and some blocks with higher numbers. Throws InputError for a
-/// block_size of 0 and an empty function.
+/// By then all blocks with lower numbers have finished. Some blocks with higher numbers may have finished, too. Throws
+/// InputError for a block_size of 0 and an empty function.
 void parallel_for_blocks(std::size_t count, std::size_t block_size,
                          const std::function<void(std::size_t block, std::size_t begin, std::size_t end)>& body);
 

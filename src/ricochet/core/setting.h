@@ -21,7 +21,7 @@ namespace ricochet {
 struct Range {
     double lower = -std::numeric_limits<double>::infinity();
     double upper = std::numeric_limits<double>::infinity();
-    bool lower_open = false;      ///< lower itself is not allowed
+    bool lower_open = false;      ///< `lower` itself is not allowed
     bool takes_infinity = false;  ///< infinity is allowed; only code can set it, no scene
 
     [[nodiscard]] constexpr bool contains(double x) const {

@@ -61,8 +61,8 @@ inline constexpr double kBoxPaddingUnits = 16.0;
 
 /// Additional growth of boxes, as a fraction of the half extent. The boxes also grow by kCandidateSlack times the
 /// largest world coordinate. Reason: safe positions and rounded points of a path can be beside the segments of a query.
-/// Paths that reach kBoxSlack / kPathRounding = 2^28 half extents beyond the mesh must test every triangle. Smaller:
-/// this limit decreases.
+/// The rounding of a path exceeds this growth if the path reaches kBoxSlack / kPathRounding = 2^28 half extents beyond
+/// the mesh. Such a path is tested against every triangle. Smaller: this happens at a shorter distance.
 inline constexpr double kBoxSlack = 0x1p-20;
 
 }  // namespace ricochet

@@ -42,9 +42,9 @@ inline constexpr int kMaxSlowContacts = 32;
 /// Smaller: coplanar triangles use up the three contact points of a manifold. Larger: a blunt corner counts as flat.
 inline constexpr double kSameNormal = 1e-12;
 
-/// Approach speed towards a plane that a velocity may have after projection onto the plane, relative to the velocity's
-/// length. Reason: the projection rounds a few times. Smaller: a projection counts as infeasible, and the next one,
-/// which gives a lower speed, replaces it. Larger: a particle creeps into a wall's contact offset.
+/// Largest speed towards a plane that a velocity may keep after its projection onto the plane, relative to the
+/// velocity's length. Reason: the projection rounds a few times. Smaller: a projection counts as infeasible, and the
+/// next one, which gives a lower speed, replaces it. Larger: a particle creeps into a wall's contact offset.
 inline constexpr double kProjectionRounding = 0x1p-48;
 
 /// Speed that counts as zero after friction has stopped a particle, relative to the speed before. Reason: it covers
@@ -88,9 +88,10 @@ inline constexpr double kEnergyGain = 0x1p-49;
 /// of gravity. Larger: a particle stays at rest on a slope slightly steeper than the angle of friction.
 inline constexpr double kHoldRounding = 0x1p-40;
 
-/// Smallest part of a unit direction, perpendicular to other directions, for which it counts as independent of them.
-/// Reason: a direction that consists of rounding would remove a motion that no surface blocks. Smaller: such directions
-/// count as independent. Larger: particles move in narrow wedges that should support them.
+/// Smallest length of a unit vector's component perpendicular to other vectors for which the vector counts as
+/// independent of them. Reason: a smaller component consists of rounding. Its direction would remove a motion that no
+/// surface blocks. Smaller: such vectors count as independent. Larger: particles move in narrow wedges that should
+/// support them.
 inline constexpr double kDependentDirection = 0x1p-36;
 
 /// Speed along a surface's normal, as a fraction of the particle's speed, from which the particle leaves the surface.
@@ -153,9 +154,10 @@ inline constexpr int kMostTimelessIntervals = 24;
 /// need fewer contacts. Smaller: more particles between bodies jam. Larger: jammed particles take more time.
 inline constexpr int kMostSharedContacts = 64;
 
-/// Approach speed of a landing, up to which the contact from before a velocity jump of the body continues. It is a
-/// multiple of the speed at which the jump released the particle. Reason: the end of a step only interrupts such a
-/// contact. Smaller: such landings bounce. Larger: real impacts lose their rebound.
+/// Largest approach speed at which a particle lands on a body without an impact, after a velocity jump of the body has
+/// ended their contact. The earlier contact then continues. The limit is a multiple of the speed at which the jump
+/// released the particle. Reason: the end of a step only interrupts such a contact. Smaller: such landings bounce.
+/// Larger: real impacts lose their rebound.
 inline constexpr double kLandsAgain = 2.0;
 
 /// Additional distance beyond the rim of a deforming triangle, in contact offsets, at which a point still moves along

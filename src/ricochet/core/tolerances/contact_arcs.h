@@ -44,9 +44,9 @@ inline constexpr double kMaxArcAngle = 0.1;
 /// wider than a shape passes through its other side.
 inline constexpr double kMostTurn = 2.0 * kMaxArcAngle;
 
-/// Turn, in rad, or path, in radii, that counts as a jump between two times that differ by 2^-40 of an arc's duration.
-/// The start of an arc is also tested for a jump. A jump means that the surface is narrower than the sphere, and the
-/// sphere jams. Smaller: fast turns jam. Larger: small jumps are missed.
+/// Turn of a surface, in rad, or displacement of a sphere, in radii, that counts as a jump if it occurs within 2^-40 of
+/// an arc's duration. The start of an arc is also tested for a jump. A jump means that the surface is narrower than the
+/// sphere, and the sphere jams. Smaller: fast turns jam. Larger: small jumps are missed.
 inline constexpr double kJump = 1e-3;
 
 /// Largest relative correction of the state at the end of an arc, which restores the energy. Reason: the error of the
@@ -72,9 +72,8 @@ inline constexpr double kMaxArcPhase = 2.0 * kMaxArcAngle;
 /// forces that change quickly are integrated less exactly.
 inline constexpr double kSameMiddle = 1.25;
 
-/// Number of equal intervals in a step at which intervals are not shortened further for a turn of friction. It is the
-/// usual value of 1 / FrictionLimits::shortest. Smaller: turning friction is integrated less exactly. Larger: more
-/// intervals.
+/// Duration of a step divided by FrictionLimits::shortest, the duration down to which contact intervals are shortened
+/// because friction turns. Smaller: turning friction is integrated less exactly. Larger: more intervals.
 inline constexpr double kShortestIntervals = 32.0;
 
 /// Smallest speed that is assumed for a flow along a round surface to compute the duration of a chord. It is a fraction

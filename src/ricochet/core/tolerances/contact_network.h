@@ -46,15 +46,15 @@ inline constexpr int kMostNetworkSweeps = 300;
 /// never come to rest.
 inline constexpr double kNetworkSpeedError = 0.02;
 
-/// Smallest speed in kNetworkSpeedError, as a fraction of the velocity change by forces in a step. Reason: a network
-/// with that error can fall asleep. Smaller: networks that hardly move use all sweeps without effect. Larger: piles
-/// creep.
+/// Lower limit of the fastest sphere's speed in kNetworkSpeedError, as a fraction of the velocity change by forces in a
+/// step. Reason: the resulting error is so small that the spheres can fall asleep. Smaller: networks that hardly move
+/// use all sweeps without effect. Larger: piles creep.
 inline constexpr double kNetworkRestingSpeed = 0.05;
 
-/// Smallest speed of a contact's spheres in kNetworkSpeedError. The first constant counts velocity changes by forces in
-/// a step. The second one is a part of the fastest sphere's speed. Smaller: spheres that rest beside fast spheres move
-/// less, but more sweeps are needed. While all spheres fall, the number of sweeps grows many times. Larger: spheres
-/// that rest beside fast spheres stay awake.
+/// Lower limits of the speed to which kNetworkSpeedError refers at a single contact. The first constant is a multiple
+/// of the velocity change of a sphere by forces in a step. The second one is a fraction of the fastest sphere's speed.
+/// Smaller: spheres that rest beside fast spheres move less, but more sweeps are needed. While all spheres fall, the
+/// number of sweeps grows many times. Larger: spheres that rest beside fast spheres stay awake.
 inline constexpr double kNetworkForceSpeed = 8.0;
 inline constexpr double kNetworkFastestShare = 0.6;
 
@@ -101,10 +101,10 @@ inline constexpr double kVeryUnlikeMasses = 1e4;
 /// Smaller: more Newton steps. Larger: these sweeps do not reach their tolerance.
 inline constexpr double kDirectShare = 0.25;
 
-/// Impulse of a contact of restitution 0, up to which the contact only supports the body. It is a multiple of the
-/// impulse that stops the body's own approach. The restitution 0 of such a contact does not lower the restitution of
-/// connected impacts. Smaller: a floor absorbs impacts between spheres that roll on it. Larger: impacts keep energy
-/// that such a contact should absorb.
+/// Largest impulse with which a contact of restitution 0 counts as a support instead of an impact. It is a multiple of
+/// the impulse that would stop the approach at this contact alone. The restitution 0 of a support does not lower the
+/// restitution of connected impacts. Smaller: a floor absorbs impacts between spheres that roll on it. Larger: impacts
+/// keep energy that such a contact should absorb.
 inline constexpr double kHoldsOnly = 1.5;
 
 /// Largest number of surfaces that a planned path may hit in one step. After that the particle stays at the position

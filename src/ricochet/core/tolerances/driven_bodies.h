@@ -65,9 +65,9 @@ inline constexpr double kNegligibleLoad = 1e-3;
 /// than the impact. Smaller: a substep may have no duration. Larger: bodies receive their impulses later.
 inline constexpr double kSoonUlps = 16.0;
 
-/// Largest power of kPartAfterImpact that is tried, and factor on the shortest substep for each further power. Smaller
-/// power or larger factor: impacts that dissipate little energy can add energy. Larger power or smaller factor: more
-/// substeps.
+/// Largest power of kPartAfterImpact that is tried. The second constant is the factor by which each further power
+/// reduces the shortest duration of a substep. Smaller power or larger factor: impacts that dissipate little energy can
+/// add energy. Larger power or smaller factor: more substeps.
 inline constexpr int kMostPartPowers = 3;
 inline constexpr double kShorterPart = 0.1;
 

@@ -98,8 +98,8 @@ inline constexpr double kFoldedRope = 1e-9;
 /// walls beside the arc.
 inline constexpr double kMostCloudTurn = 0.25;
 
-/// Largest turn of this kind, in rad, in one step of the run. Scenes with a larger turn are refused. Reason: one step
-/// then needs 64 pieces. Larger: a step may take an unlimited time.
+/// Largest turn, as defined for kMostCloudTurn, in one step of the run, in rad. Scenes with a larger turn are refused.
+/// Reason: one step then needs 64 pieces. Larger: a step may take an unlimited time.
 inline constexpr double kMostCloudTurnOfStep = 16.0;
 
 /// Largest number of Newton iterations of the implicit step of one particle. After that the last iterate is used.
@@ -142,10 +142,10 @@ inline constexpr double kIndependentSupport = 1e-6;
 /// Smaller: more iterations for predictions that are discarded. Larger: supports are found from less exact motions.
 inline constexpr double kRoughNewtonTolerance = 1e-5;
 
-/// Smallest yield of friction at the supports of coupled particles, see PlannedContacts::find(). The first constant
-/// applies until the supports are known, and the second one afterwards. Reason: with ten times the second value,
-/// springs of 1e8 N/m gained 0.8 J in a step. Smaller: more iterations. Larger: sticking particles creep, and springs
-/// gain energy.
+/// Smallest compliance of friction at the supports of coupled particles, see PlannedContacts::find(). The first
+/// constant applies until the supports are known, and the second one afterwards. Reason: with ten times the second
+/// value, springs of 1e8 N/m gained 0.8 J in a step. Smaller: more iterations. Larger: sticking particles creep, and
+/// springs gain energy.
 inline constexpr double kRoughFrictionYield = 1e-3;
 inline constexpr double kFrictionYield = 1e-4;
 

@@ -17,10 +17,10 @@ inline constexpr double kCellSlack = 1.0 + 0x1p-20;
 inline constexpr double kPairApproachRounding = 0x1p-48;
 
 /// Overlap of two spheres, relative to the smaller radius, above which the spheres count as pressed together. The
-/// overlap must have grown in the step, in which the spheres moved without a common plan. A force then presses the
-/// spheres together, and single impacts cannot resolve this. Reason: the limit is far above the rounding of impacts and
-/// far below visible overlap. Smaller: rounding alone turns event-driven islands into contact islands. Larger: spheres
-/// overlap more.
+/// overlap must also have grown in a step in which the spheres moved outside a contact island. A force then presses the
+/// spheres together, and single impacts cannot separate them. Reason: the limit is far above the rounding of impacts
+/// and far below visible overlap. Smaller: rounding alone turns event-driven islands into contact islands. Larger:
+/// spheres overlap more.
 inline constexpr double kPressedOverlap = 1e-7;
 
 /// Difference of impact times, in ulp, up to which impacts are simultaneous. Reason: the times of symmetric pairs

@@ -20,8 +20,8 @@ constexpr double kMaxAlongAxis = 1024.0;
 
 constexpr std::uint8_t kFar = 255;
 
-/// Largest number of cell marks per triangle. Every grid may use the marks of a million triangles in addition. Local,
-/// because only the cost depends on it.
+/// Largest number of cell marks per triangle. In addition, every grid may use as many marks as for a million triangles.
+/// Local, because only the cost depends on it.
 constexpr double kMaxMarks = 16.0;
 
 double cells_along(double extent, double cell) { return std::floor(extent / cell) + 1.0; }

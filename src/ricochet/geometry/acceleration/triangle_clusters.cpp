@@ -136,8 +136,8 @@ struct View {
     float size;  ///< upper bound on all numbers here and on differences to the corners
 };
 
-/// Returns the view of a path along the shear. point: of the path, relative to the cluster's centre. The path extends
-/// up to `extent` beyond the point.
+/// Projects a path along the shear to a point. point: a point of the path, relative to the cluster's centre. extent:
+/// bound on the path's extent beyond this point; 0 for a path that is not clipped to the cluster.
 template <int kAxis>
 View view_along(const Vec3& point, const Shear& shear, double margin, float extent) {
     using Axes = Projection<kAxis>;

@@ -16,8 +16,8 @@ constexpr std::uint32_t kUnknown = std::numeric_limits<std::uint32_t>::max();
 
 /// Parity of the number of faces at the edges of a shell.
 struct ShellParity {
-    bool is_odd_once = false;  ///< an edge has an odd number of faces if repeated faces count once
-    bool is_odd = false;       ///< an edge has an odd number of faces if both sides of a sheet count
+    bool is_odd_once = false;  ///< true if some edge has an odd number of faces, counting repeated ones once
+    bool is_odd = false;       ///< true if some edge has an odd number of faces, counting both sides of sheets
 };
 
 /// Returns true if equally many faces use each edge in both directions.

@@ -6,8 +6,8 @@
 namespace ricochet {
 namespace {
 
-/// Returns the moments of a body that is centred at the origin and then transformed by a map. volume: after the map.
-/// second: before the map, times the determinant.
+/// Returns the moments of a body that is centred at the origin and then transformed by a map. volume: volume after the
+/// map. second: second moments before the map, multiplied by the map's determinant.
 MassMoments placed(double volume, const SymmetricMatrix& second, const AffineMap& map) {
     const Vec3& center = map.translation;
     return {volume, volume * center, congruent(map, second) + volume * outer_product(center)};

@@ -30,7 +30,7 @@ bool crosses_right(const Vec3& a, const Vec3& b, const Vec3& p) {
     const Vec3& high = a_is_above ? a : b;
     int turn = orient2d(flat(low), flat(high), flat(p));  // +1: p is on the left
     if (turn == 0) turn = high.x > low.x ? 1 : (high.x < low.x ? -1 : 0);
-    return turn > 0;  // on an edge along y, p is moved to the right of it
+    return turn > 0;  // 0: the edge runs along y, and the moved point is to the right of it
 }
 
 // Returns +1 if the upward ray from the moved point crosses the triangle along its normal, -1 if against the normal,

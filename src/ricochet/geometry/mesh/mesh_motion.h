@@ -82,8 +82,8 @@ private:
     MeshEnds ends_;
 };
 
-/// Returns the motion of vertices with positions from a function, in m, at a time, in s. The function is sampled at the
-/// given times. Throws InputError like MeshMotion.
+/// Returns a motion whose keys are samples of a function at the given times. positions_at(time) returns the positions
+/// of all vertices, in m, at a time, in s. Throws InputError like MeshMotion.
 [[nodiscard]] MeshMotion sampled_motion(const std::function<std::vector<Vec3>(double time)>& positions_at,
                                         std::vector<double> times, MeshEnds ends = MeshEnds::hold);
 

@@ -1,12 +1,12 @@
 /// \file
-/// Angle-weighted pseudonormals. They determine on which side of a mesh a point is from the closest point of the mesh
-/// alone.
+/// Angle-weighted pseudonormals. They determine on which side of a mesh a point p is. Only the closest point of the
+/// mesh is needed for this.
 ///
 /// Method: J. A. Baerentzen, H. Aanaes, "Signed distance computation using the angle weighted pseudonormal", IEEE TVCG
-/// 11(3), 2005. Consider triangles that bound a solid and are wound outward. The scalar product with the offset from
-/// the closest point to p is positive outside and negative inside. This is also true at edges with four or more faces,
-/// and for nested shells. Vertices at the same position count as one (0 and -0 are equal). Triangles with collinear
-/// corners are left out.
+/// 11(3), 2005. Consider triangles that bound a solid and are wound outward. The offset from the closest point to p is
+/// multiplied by the pseudonormal at the closest point. This scalar product is positive outside and negative inside.
+/// The same is true at edges with four or more faces, and for nested shells. Vertices at the same position count as one
+/// (0 and -0 are equal). Triangles with collinear corners are left out.
 #pragma once
 
 #include <array>

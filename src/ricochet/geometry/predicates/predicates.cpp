@@ -14,8 +14,9 @@ constexpr double kU = 0x1p-53;
 /// Returns the sign of component `axis` of (b - a) x (c - a): the orientation of the three points projected along that
 /// axis.
 int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
-    // Each of the two terms has at most 4 roundings (2 differences, 1 product, 1 subtraction). As for
-    // kDeterminantFilter, the bound is slightly above 4 u, so 4.5 u is used. Local: an error bound of this arithmetic.
+    // Each of the two terms has at most 4 roundings (2 differences, 1 product, 1 subtraction). The bound is slightly
+    // above 4 u, so 4.5 u is used; kDeterminantFilter is derived in the same way. Local: an error bound of this
+    // arithmetic.
     constexpr double kMinorFilter = 4.5 * kU;
     const detail::FilteredCross filtered = detail::filtered_cross(b - a, c - a);
     const double value = filtered.value[axis];

@@ -9,8 +9,8 @@ namespace {
 /// doubles.
 bool is_moderate(double x) { return std::fabs(x) > 0x1p-400 && std::fabs(x) < 0x1p400; }
 
-/// Returns x / y rounded to a double, after a relative error of 2^-100. x must not be zero. Large and small numbers are
-/// scaled by powers of two, so that the intermediate products stay in the range of doubles.
+/// Returns x / y with a relative error of 2^-100, then rounded to a double. x must not be zero. Large and small numbers
+/// are scaled by powers of two, so that the intermediate products stay in the range of doubles.
 double quotient(const DoubleDouble& x, const DoubleDouble& y) {
     if (is_moderate(x.hi) && is_moderate(y.hi)) return (x / y).hi;
     const int x_exponent = std::ilogb(x.hi);

@@ -82,7 +82,7 @@ public:
     /// Finds, for each part, the first time at which the distance from the path decreases to `radius` (m, >= 0), from
     /// either side. From outside, only the first contact over all parts is returned. Parts in `supports` are skipped.
     /// If there are any, contacts from outside are skipped too. A sphere that starts in overlap has a contact only if
-    /// it approaches. This is at the first time at which the distance is at most the radius and decreases (faster than
+    /// it approaches: at the first time at which the distance is at most the radius and decreases (faster than
     /// kMinApproach of the speed). A point that starts on the surface hits it at time 0, as if it came from the side
     /// opposite to its motion.
     ///

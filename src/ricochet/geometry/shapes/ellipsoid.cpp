@@ -206,7 +206,7 @@ ShapePoint Ellipsoid::closest_point(const PreciseVec3& y) const {
     double rest = 1.0;  // remainder of sum (x_i / a_i)^2 = 1, for the smallest axis if y has no component along it
     for (size_t i = 0; i < axes_; ++i) {
         if (sigma == 0.0 && excess_[i] == 0.0) continue;
-        // Uses sigma deep inside and tau near the surface, because neither form has cancellation there.
+        // Deep inside, the form with sigma has no cancellation. Elsewhere, the form with tau has none.
         point[i] =
             sigma > 0.5 ? coordinates[i] / (1.0 + tau / ratio_[i]) : coordinates[i] * ratio_[i] / (excess_[i] + sigma);
         rest -= square(point[i] / half_axes_[i]);

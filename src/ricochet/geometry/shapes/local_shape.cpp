@@ -14,9 +14,9 @@ constexpr int kMaxSegmentSteps = 100;
 /// Local: the difference is below the rounding of the result.
 constexpr double kSegmentError = 0x1p-50;
 
-/// Largest excess of a squared length over its minimum by the rounding of the perpendicular's foot. It is relative to
-/// the squared length at the start. The foot has an error of about 8 u, and the squared length has the square of that
-/// error. Local: an error bound of this arithmetic.
+/// Error of the smallest squared length along a segment, because the foot of the perpendicular is rounded. It is
+/// relative to the squared length at the start. The foot has a relative error of about 8 u, and the squared length has
+/// the square of that error. Local: an error bound of this arithmetic.
 constexpr double kMinimumError = 0x1p-98;
 
 double rounded_value(double x) { return x; }

@@ -294,8 +294,8 @@ private:
         Piece<double, Degree> piece(w, u, v, radius_);
         return piece.is_free_along(nearest.offset) || piece.is_free_of(nearest.feature);
     }
-    /// Returns true if the distance at mid-time exceeds the path length relative to every corner until either end. The
-    /// distance then also exceeds the path length relative to every other point of the triangle.
+    /// Returns true if the gap at mid-time exceeds the displacement relative to each corner, from mid-time to any other
+    /// time of the interval. The gap then also exceeds the displacement relative to all other points of the triangle.
     template <std::size_t Degree>
     [[nodiscard]] bool is_too_far_to_come(double s, double t, double distance) const {
         const double spare = distance - radius_ - kLeastGap * offset();

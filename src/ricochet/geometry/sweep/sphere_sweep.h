@@ -33,9 +33,9 @@ struct SphereContact {
 /// A moving sphere, prepared for many tests.
 ///
 /// The time of contact is the first time at which the distance between centre and surface decreases to the radius. A
-/// sphere that starts in overlap has a contact only if it approaches. This is at the first time at which the distance
-/// is at most the radius and decreases (faster than kMinApproach of the speed). Separation and motion along the surface
-/// cause no contact. If the centre starts on the surface itself, no motion causes a contact until the centre returns.
+/// sphere that starts in overlap has a contact only if it approaches: at the first time at which the distance is at
+/// most the radius and decreases (faster than kMinApproach of the speed). Separation and motion along the surface cause
+/// no contact. If the centre starts on the surface itself, no motion causes a contact until the centre returns.
 class SphereSweep {
 public:
     /// Prepares a sphere of the given radius (m, > 0). Certified segments can be up to `beside` (m, >= 0) beside the
@@ -100,7 +100,7 @@ private:
     Vec3 upper_;
     double max_distance_ = 0.0;  ///< bound on the distance from the start, in m
     double scale_ = 0.0;         ///< largest coordinate of the whole path's hull plus radius, in m
-    double slack_ = 0.0;  ///< kCandidateSlack of scale_ plus the distance that segments can lie beside the path, in m
+    double slack_ = 0.0;         ///< kCandidateSlack * scale_ plus the distance of segments from the path, in m
     Coefficients<double> squared_displacement_{};
     Coefficients<DoubleDouble> precise_squared_displacement_{};
 };

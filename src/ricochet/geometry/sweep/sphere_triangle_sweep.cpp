@@ -114,8 +114,9 @@ double SphereTriangleSweep::seam_slack(const Vec3& p) const {
     return kSeamSlack * (std::max(max_abs(p), largest_coordinate_) + radius_);
 }
 
-/// Returns the height above the face times the length of a normal, and sets the radius times this length. A normal
-/// along an axis is exact and has length 1, so any triangle in an axis-aligned plane gives the same bits.
+/// Returns the height above the face multiplied by the length of a normal. Sets scaled_radius to the radius multiplied
+/// by the same length. A normal along an axis is exact and has length 1, so any triangle in an axis-aligned plane gives
+/// the same bits.
 std::array<DoubleDouble, 4> SphereTriangleSweep::height_over_face(DoubleDouble& scaled_radius) {
     const PreciseVec3 start = difference<DoubleDouble>(path_.c[0], corners_[0]);
     scaled_radius = DoubleDouble(radius_);

@@ -112,9 +112,9 @@ public:
                                                        InsideRule rule = InsideRule::parity) const;
 
     /// Returns the first contacts of points (radius 0) or spheres on straight paths. radii: in m, one for all paths or
-    /// one for each. For points an exact test of the closed segment between both positions decides. In the result,
-    /// `distance` is the fraction of the path, and `point` is on the mesh. A sphere that overlaps the mesh at the start
-    /// has a contact if it approaches.
+    /// one for each. For points, an exact test of the closed segment between the two positions decides whether there is
+    /// a contact. In the result, `distance` is the fraction of the path, and `point` is on the mesh. A sphere that
+    /// overlaps the mesh at the start has a contact if it approaches.
     [[nodiscard]] MeshHits sweep(std::span<const Vec3> from, std::span<const Vec3> to,
                                  std::span<const double> radii) const;
     /// Returns the first contacts while the mesh's vertices move straight to `vertices_after`. No contact is missed. A

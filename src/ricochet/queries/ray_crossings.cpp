@@ -12,14 +12,15 @@
 namespace ricochet {
 namespace {
 
-/// Fraction by which the segment for the broad phase extends beyond the mesh's box, so that rounding removes no part of
-/// the mesh. Local, because the exact test decides.
+/// Fraction by which the part of a ray that the broad phase tests is lengthened beyond the mesh's box. This segment
+/// then reaches all of the mesh despite rounding. Local, because the exact test decides.
 constexpr double kBeyond = 0x1p-20;
 
-/// Rounding of the segment's ends, relative to their coordinates. Local: an error bound of this arithmetic.
+/// Rounding of the ends of this segment, relative to their coordinates. Local: an error bound of this arithmetic.
 constexpr double kEndRounding = 0x1p-48;
 
-/// Rounding of a fraction of the segment, with a margin. Local: an error bound of this arithmetic.
+/// Relative rounding of a position along this segment, given as a fraction of its length. Includes a margin. Local: an
+/// error bound of this arithmetic.
 constexpr double kFractionRounding = 0x1p-40;
 
 struct Candidate {

@@ -142,17 +142,18 @@ std::optional<MovingContact> contact_after_leaving(const MovingPoint& point, dou
         auto contact =
             first_contact(rest_of(point, from), radius, {{rest_of(a, from), rest_of(b, from), rest_of(c, from)}});
         if (!contact) return std::nullopt;
-        if (contact->time == 0.0) continue;  // the separation is smaller than the rounding of the rest
+        if (contact->time == 0.0) continue;  // the separation is below the rounding of rest_of()
         contact->time = std::min(1.0, from + (1.0 - from) * contact->time);
         return contact;
     }
     return std::nullopt;
 }
 
-/// Returns the contact of a sphere that touches or overlaps the triangle at the start, in the contact `at_start`. If
-/// the distance decreases, the contact is at the start, as beside a triangle at rest (SphereSweep). Otherwise the
-/// contact is when the sphere comes nearer to the triangle than at the start, or touches it again after a separation.
-/// If all corners of the triangle move equally, the sphere never comes nearer.
+/// Returns the contact of a sphere that touches or overlaps the triangle at the start. `at_start` is the contact that
+/// first_contact() reports at time 0. If the distance decreases at the start, the result is `at_start`, as for a
+/// triangle at rest (SphereSweep). Otherwise the sphere has a contact when it comes nearer to the triangle than at the
+/// start, or touches it again after a separation. If all corners of the triangle move equally, the sphere never comes
+/// nearer.
 std::optional<MovingContact> contact_from_overlap(const MovingPoint& point, double radius,
                                                   const MovingTriangle& triangle, const MovingContact& at_start) {
     const auto& [a, b, c] = triangle.corners;

@@ -133,7 +133,8 @@ bool covers_chord(const CollisionWorld& world, const QueryMargins& margins, cons
            !may_reach_triangles(world, margins, path, from, to);
 }
 
-// If the boxes do not cover the surroundings of a path, the path is tested against every triangle.
+// If the boxes do not cover the surroundings of a path that may reach triangles, the path is tested against every
+// triangle.
 CandidateSet test_triangles_near(const CollisionWorld& world, const QueryMargins& margins, const Path& path,
                                  NarrowPhase& narrow_phase) {
     PieceQuery query{world, margins, path, narrow_phase};

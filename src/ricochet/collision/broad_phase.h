@@ -18,7 +18,7 @@ namespace ricochet {
 /// Triangles that were candidates of a path.
 enum class CandidateSet {
     near,  ///< triangles that the broad phase proposed
-    all,   ///< all triangles: the path is too curved or too long for the boxes, or culling is off
+    all,   ///< all triangles: the path is too curved or too long for the boxes
 };
 
 /// Passes to the narrow phase every triangle that the path may come near, in the order of time, up to the first

@@ -22,8 +22,8 @@ constexpr int kMostRounds = 8;
 /// displacement is certified before use.
 constexpr double kClearEnough = 0x1p-20;
 
-/// Smallest determinant of three normals, or squared sine of the angle between two, for which they count as
-/// independent. Local, because other combinations of normals give the displacement if one is skipped.
+/// Smallest squared determinant of three normals, or squared sine of the angle between two, for which they count as
+/// independent. Local, because if a combination of normals is skipped, other combinations give the displacement.
 constexpr double kDependent = 1e-24;
 
 /// A surface near the ball. The displacement d has to satisfy dot(d, normal) >= missing.

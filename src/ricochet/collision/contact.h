@@ -41,9 +41,9 @@ struct Contact {
     [[nodiscard]] const ContactSurface& first() const { return surfaces[0]; }
 };
 
-/// Returns the unit normal of a surface that a point at p with velocity v reaches from `side` (+1 or -1). A point that
-/// moves exactly in the surface's plane (side 0) has hit its boundary head-on. Its normal is then opposite to its
-/// velocity. `normal` is the surface's unit normal at p.
+/// Returns the unit normal of a surface that a point at p with velocity v reaches from `side` (+1 or -1). Side 0 means
+/// that the point moves exactly in the surface's plane and hits the surface's boundary head-on. The result is then the
+/// direction opposite to v. `normal` is the surface's unit normal at p.
 [[nodiscard]] Vec3 facing_normal(const Vec3& normal, int side, const Vec3& v);
 
 /// Removes the seams of flat surfaces from a list: edges and vertices beside a face of the same normal. Changes the

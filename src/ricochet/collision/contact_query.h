@@ -29,9 +29,9 @@ public:
         : geometry_(geometry), scratch_(&scratch), margins_(margins), start_(start), candidates_(candidates) {}
 
     /// Returns true if no surface blocks the closed segment [p, q] of the centre. This is the certificate. A surface
-    /// blocks a segment that intersects it; this is decided exactly for planes and triangles. It also blocks a segment
-    /// that comes nearer to it than the radius minus sphere_tolerance() of the segment. Supports and surfaces that are
-    /// overlapped from the start block only segments that intersect them.
+    /// blocks a segment that intersects it; this is decided exactly for planes and triangles. A surface also blocks a
+    /// segment if their distance is smaller than the radius minus sphere_tolerance() of the segment. Supports and
+    /// surfaces that are overlapped from the start block only segments that intersect them.
     [[nodiscard]] bool is_free(const Vec3& p, const Vec3& q) const;
     /// Returns the surface with the smallest number that blocks the segment, or nothing.
     [[nodiscard]] std::optional<SurfaceId> blocker(const Vec3& p, const Vec3& q) const;
@@ -42,7 +42,7 @@ public:
     [[nodiscard]] bool is_free_after(const Vec3& p, const Vec3& q) const;
 
     // Functions for space-time segments between two stored positions. Such a segment is free if it is free in the frame
-    // of every collider near it. If no collider moves, it is the straight segment.
+    // of every collider near it. If no collider moves, the space-time segment is simply the straight segment.
 
     /// Adds the surfaces of other frames, which must outlive this object.
     void join(const SurfacesInOtherFrames& other_frames) { other_frames_ = &other_frames; }
@@ -69,8 +69,8 @@ public:
     [[nodiscard]] bool covers_chord(const Path& path, double from, double to) const;
     /// Returns the surfaces on which the point lies exactly.
     [[nodiscard]] std::vector<SurfaceId> surfaces_at(const Vec3& p) const;
-    /// Returns true if the particle starts in overlap: a sphere that overlaps a surface by more than the tolerance, or
-    /// a point on a surface.
+    /// Returns true if the particle starts in overlap: a sphere that has supports or overlaps a surface by more than
+    /// the tolerance, or a point on a surface.
     [[nodiscard]] bool starts_in_overlap() const;
 
     [[nodiscard]] const SurfaceGeometry& geometry() const { return geometry_; }

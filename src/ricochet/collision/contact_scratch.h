@@ -107,7 +107,7 @@ struct ContactScratch {
     std::vector<std::uint32_t> triangles;  ///< candidates that may touch the path, up to the first contact found
     std::vector<std::uint32_t> planes;     ///< planes that may touch it, as indices into CollisionWorld::planes()
     std::vector<std::uint32_t> shapes;     ///< shapes that may touch it, as indices into CollisionWorld::shapes()
-    std::vector<SurfaceId> overlapped;     ///< surfaces that the sphere already overlaps at the path's start
+    std::vector<SurfaceId> overlapped;     ///< supports, and surfaces that the sphere overlaps at the path's start
     std::vector<Hit> hits;
     std::vector<Approach> approaches;
     std::vector<PathPoint> chain;  ///< ends of certified segments, see CertifiedPath

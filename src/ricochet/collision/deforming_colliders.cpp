@@ -58,7 +58,7 @@ bool DeformingColliders::is_segment_free(const StoredPosition& from, const Store
     std::vector<SurfaceId> all;
     if (begin_ <= from.time && to.time <= end_) {
         near(box_of(from, to, radius), all);
-    } else {  // a stalled particle continues, and its start is outside the step
+    } else {  // the segment of a stalled particle starts before the step, and the boxes do not cover it
         for (const DeformingMesh& mesh : meshes_) {
             for (std::size_t k = 0; k < mesh.solid_count(); ++k) all.push_back(mesh.solid_surface(k));
         }

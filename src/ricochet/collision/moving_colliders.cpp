@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Number of bodies per block of parallel work that bounds motions.
+/// Number of bodies per block of parallel work when the bounds of motions are computed.
 constexpr std::size_t kBodiesInBlock = 32;
 
 /// Cached pose of one thread. Queries repeatedly need the same few poses.

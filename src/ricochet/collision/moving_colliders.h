@@ -99,7 +99,8 @@ public:
         bodies_[body].angular_momentum = angular_momentum;
     }
     /// Returns the angular velocity of a free body at a time, in s, relative to that of its planned path, in rad/s. The
-    /// path has one angular velocity throughout, that of its middle. Impacts with this value would not conserve energy.
+    /// path has one angular velocity throughout, that of its middle. Impacts computed with the path's angular velocity
+    /// would not conserve energy.
     [[nodiscard]] Vec3 turning_beside_path(BodyId body, double time) const;
     [[nodiscard]] bool is_dynamic(BodyId body) const { return has_frame(body) && bodies_[body].mobility.has_value(); }
     /// Returns the mobility of a dynamic body at a time, in s, in world coordinates. Requires is_dynamic().

@@ -64,8 +64,8 @@ void merge(Contact contact, std::optional<Contact>& first) {
 
 }  // namespace
 
-/// Returns the end of the next piece, in s along the path. It is the next cut, or the end of a fine piece or of a
-/// longer piece without contacts before that cut.
+/// Returns the end of the next piece, in s along the path. The piece ends at the next cut, unless a fine piece, or a
+/// longer piece without contacts, ends earlier.
 double MovingSweep::end_of_piece(const PathPoint& start) {
     is_clear_ = false;
     const double cut = pieces_.cuts()[next_];
@@ -96,7 +96,7 @@ double MovingSweep::clear_until(const PathPoint& start, double fine) {
             error = std::min(error, (world.bvh_for(query_.radius).margin() - query_.radius) / 32.0);
         }
         longest = std::min(longest, longest_cubic(error, body.fourth));
-        // The pieces cut from the cubic can deviate by the same amount from the true path, on its other side.
+        // This cubic and the cubic that is swept later can deviate by `error` from the true path, to opposite sides.
         body.beside = beside_in_bodies() + 2.0 * error;
     }
     if (!(longest >= 2.0 * fine)) return begin_;

@@ -72,7 +72,7 @@ private:
     double begin_ = 0.0;       // start of the next piece, in s
     bool is_clear_ = false;    // true if no surface of other frames comes near the piece
     int fine_left_ = 0;        // number of fine pieces before a longer one is tried again
-    int fine_after_next_ = 1;  // the same number after the next failure of a longer piece
+    int fine_after_next_ = 1;  // value of fine_left_ after the next failure of a longer piece
     std::optional<SurfacesInOtherFrames> other_frames_;
     Path piece_;
     PathClock clock_;

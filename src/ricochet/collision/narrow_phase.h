@@ -28,9 +28,9 @@ struct QueryMargins {
     double tolerance;        ///< in m, sphere_tolerance() of the path's start; 0 for points
     double largest;          ///< in m, largest_coordinate() of the path
     double slack;            ///< in m, largest distance of certified positions from the path
-    double curvature;        ///< in m, margin that the boxes leave for the path's curvature; 0 if boxes_hold is false
-    /// True if the boxes cover the path's rounding and `beside`. If false, every triangle near the path's own box is a
-    /// candidate.
+    double curvature;        ///< in m, margin that the boxes leave for the path's curvature; 0 if they leave none
+    /// True if the boxes cover the path's rounding and `beside`. If false, and if the path may reach the box of all
+    /// triangles, every triangle is a candidate.
     bool boxes_hold;
 };
 

@@ -136,7 +136,7 @@ void PlacedColliders::add(std::size_t number) {
         add_mesh(number, {std::make_shared<const TriangleMesh>(cuboid_mesh(cuboid->size)), cuboid->placement, {}, {}});
     } else {
         add_mesh(number, std::get<MeshShape>(collider.shape));
-        list_->drop_mesh(number);  // the baked copy is the collider from here on
+        list_->drop_mesh(number);  // from here on, the placed copy is used
     }
 }
 

@@ -41,7 +41,8 @@ struct SafePosition {
 
 /// Returns a position for a particle that was put exactly on surfaces. The position is at least one contact offset away
 /// from them, on the side to which their normals point. The segment to it leaves these surfaces and intersects no
-/// other. `near` is that of a path that starts at p. Returns nothing if p is on no surface or no position was found.
+/// other. `near` must be the result of a query for a path that starts at p. Returns nothing if p is on no surface or no
+/// position was found.
 [[nodiscard]] std::optional<Vec3> step_off(const NearSurfaces& near, const Vec3& p);
 
 /// Returns the contact with the surface that blocks a certificate, if root finding found no contact. Rounding can let

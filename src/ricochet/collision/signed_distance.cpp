@@ -74,8 +74,8 @@ public:
         found_.clear();
     }
 
-    /// Returns the distance within which the search continues. When each mesh has a nearest triangle, it is the largest
-    /// of their distances.
+    /// Returns the distance within which the search continues. Once a triangle of each mesh has been found, this is the
+    /// largest distance of the nearest triangles found so far.
     double operator()(std::uint32_t triangle) {
         if (distance_.world_.is_degenerate(triangle)) return within_;
         const std::uint32_t mesh = distance_.mesh_of_triangle(triangle);

@@ -74,7 +74,8 @@ std::vector<const SpringFace*> intact_faces(const SpringNetwork& springs, const 
     return intact;
 }
 
-// Returns the triangle of a face as rows in the frame. The particles of a face exist while its springs are intact.
+// Returns the triangle of a face. Its corners are the rows of the face's particles in the frame. The particles of a
+// face exist while its springs are intact.
 Triangle triangle_of(const SpringFace& face, const VtkPolyData& frame) {
     const VtkArray* array = find_array(frame.point_arrays, "id");
     if (array == nullptr || !std::holds_alternative<std::vector<std::int64_t>>(array->values)) {

@@ -16,8 +16,7 @@ FlowLaw flow_law(std::string_view name, std::string_view description, const Fiel
             [make](const ObjectView& view, const SceneContext&) { return make(view.read<Settings>()); }};
 }
 
-// Structs for functions that take their values as separate arguments.
-
+/// Keys of every flow.
 struct FlowKeys {
     double factor = 1.0;
 };

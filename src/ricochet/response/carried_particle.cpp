@@ -30,9 +30,9 @@ bool take_segment(ParticleStep& step, const StoredPosition& next) {
     return true;
 }
 
-/// Carries the particle with a collider until a given time, or as far as free segments lead. carried_position(time) is
-/// the position to which a body, or a triangle of a deforming mesh, carries the particle. Halves a blocked segment up
-/// to `depth` times. Segments end at the key times of deforming meshes.
+/// Carries the particle with a collider until a given time, or until a surface blocks the next segment.
+/// carried_position(time) is the position to which a body, or a triangle of a deforming mesh, carries the particle.
+/// Halves a blocked segment up to `depth` times. Segments end at the key times of deforming meshes.
 template <class CarriedPosition>
 bool carry_until(ParticleStep& step, const CarriedPosition& carried_position, double until, int depth) {
     const double key = bodies_of(step).deforming().next_key(stored_of(step).time);
@@ -92,7 +92,8 @@ void carry_with_meshes(ParticleStep& step, double until) {
     }
 }
 
-/// Keeps the particle at its position, or carries it with one collider after another, as far as free segments lead.
+/// Keeps the particle at its position, or carries it with one collider after another. Stops early if surfaces block all
+/// these segments.
 void carry_by_turns(ParticleStep& step, double until) {
     constexpr int kMostTurns = 8;
     const BodyId own = step.reference().body();
@@ -153,8 +154,8 @@ void carry_with_clearance(ParticleStep& step, double until) {
     }
 }
 
-/// Lets the particle wait until a given time, at its position or carried by a collider. Returns false if both are
-/// blocked. Its stored time then stops before `until`.
+/// Lets the particle wait until a given time, at its position or carried by a collider. Returns false if surfaces block
+/// both. The particle's stored time then stops before `until`.
 bool wait_until(ParticleStep& step, double until) {
     step.scratch().driven = true;
     carry_by_turns(step, until);
@@ -173,8 +174,8 @@ bool take_late_segment(ParticleStep& step, const Vec3& position) {
 }
 
 /// Moves a stalled particle from its stored time to its current time in one segment. If deforming meshes left no space
-/// for it at some time between, no chain of segments leads through that time. Its new position is the stored one, or
-/// the position to which a body or a near triangle has carried it.
+/// for it at some time between, a chain of several segments would be blocked at that time. The new position of the
+/// particle is the stored one, or the position to which a body or a near triangle has carried it.
 bool catch_up_directly(ParticleStep& step) {
     constexpr std::size_t kMostTriangles = 8;
     const MovingColliders& bodies = bodies_of(step);

@@ -7,7 +7,8 @@
 
 namespace ricochet {
 
-/// Moves the particle to a position in the world in zero time, if a free segment leads there. Otherwise it stays.
+/// Moves the particle to a position in the world in zero time, if the segment to this position is free. Otherwise the
+/// particle stays.
 void shift_to(ParticleStep& step, const Vec3& position);
 
 /// Sets the particle's position and stored time from its chain at the end of a move, if colliders move.

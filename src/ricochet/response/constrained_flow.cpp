@@ -18,8 +18,8 @@
 namespace ricochet {
 namespace {
 
-/// Halvings in the search for the time at which the flow turns away from a wall, to the last bit of the time. Local: it
-/// ends below the rounding of the result.
+/// Number of halvings in the bisection for the time at which the flow turns away from a wall. Local, because the
+/// bisection ends below the rounding of its result.
 constexpr int kReleaseHalvings = 60;
 
 /// Returns the normal of a round shape at a position, on the same side as the contact's normal.
@@ -31,7 +31,7 @@ Vec3 round_normal(const SurfaceGeometry& geometry, const ContactSurface& surface
 /// A flow without its components along the normals of surfaces. Normals of round shapes are taken at each position.
 class FlowAlong final : public FlowField {
 public:
-    /// particle: its id, for error messages.
+    /// particle: id of the particle, for error messages.
     FlowAlong(const FlowField& flow, const SurfaceGeometry& geometry, std::span<const ContactSurface> surfaces,
               std::uint64_t particle)
         : flow_(flow), geometry_(geometry), surfaces_(surfaces), particle_(particle) {}
@@ -60,7 +60,8 @@ public:
     }
 
 private:
-    /// Throws a RunError if the position is in range. A method may also try positions out of range.
+    /// Throws a RunError for a velocity g that is not finite, if the position x is in range. Positions out of range are
+    /// no error, because an integrator may try them.
     void refuse_if_in_range(const Vec3& g, const Vec3& x, double time) const {
         if (!is_finite(x) || max_abs(x) > kLargestJudged) return;
         throw RunError(
@@ -82,9 +83,9 @@ private:
     std::uint64_t particle_;
 };
 
-/// Returns the angle of the next chord along a curved surface, in rad, after a number of chords in the step. With only
-/// the finest chords, spheres that roll round many edges in one step would spend their budget: 500 chords of 0.01 rad
-/// are 5 rad, and these 50.
+/// Returns the angle of the next chord along a curved surface, in rad, after a number of chords in the step. The angle
+/// grows with this number. Otherwise a sphere that rolls round many edges in one step would exhaust its budget: 500
+/// chords of 0.01 rad turn by only 5 rad. With the growing angles, they turn by 50 rad.
 double chord_angle(int chords) {
     return kMaxChordAngle * static_cast<double>(1 << std::min(chords / kChordsToDouble, kMostChordDoublings));
 }
@@ -155,7 +156,7 @@ Path ConstrainedFlow::next_path(double duration, double reach) {
             continue;
         }
         const Part part = until_rim(held.path, reach);
-        if (is_no_progress(part.path.duration, part.path.c[1])) {  // the particle is past that surface's end
+        if (is_no_progress(part.path.duration, part.path.c[1])) {  // the particle has passed the end of that surface
             manifold_.remove(holders_.point(part.ended_by));
             holders_ = holders_now();
             continue;
@@ -230,7 +231,8 @@ void ConstrainedFlow::find_followed() {
     }
 }
 
-/// Returns an arc up to the time at which a holder releases the particle, or ends.
+/// Returns an arc up to the time at which a holder releases the particle, or at which the particle reaches the end of a
+/// holder.
 ConstrainedFlow::Part ConstrainedFlow::arc_until_release(const Path& path) const {
     Part part{path, 0};
     const auto release_at = released_by(part.path.end, state_.time + part.path.duration);
@@ -260,7 +262,8 @@ Path ConstrainedFlow::arc(double duration) const {
     return path;
 }
 
-/// Returns the first holder that the flow does not press on at a position, or whose rim is there.
+/// Returns the first holder onto which the flow no longer presses the particle at a position. Also returns a holder
+/// whose rim is at this position.
 std::optional<std::size_t> ConstrainedFlow::released_by(const Vec3& position, double time) const {
     std::array<Vec3, kMostSupports> normals;
     for (std::size_t k = 0; k < holders_.size(); ++k) {
@@ -291,15 +294,15 @@ double ConstrainedFlow::longest_arc(double duration) const {
     return duration;
 }
 
-/// Returns the number of the holder on which a flow presses least.
+/// Returns the number of the holder onto which a flow presses the particle least.
 std::size_t ConstrainedFlow::weakest(const Vec3& g) const {
     const auto loads = normal_accelerations(g, holders_.normals());
     return static_cast<std::size_t>(
         std::min_element(loads.begin(), loads.begin() + static_cast<std::ptrdiff_t>(holders_.size())) - loads.begin());
 }
 
-/// Returns a path up to the time at which the flow turns away from a holder, without components along the normals. A
-/// cubic to an end at which the flow leaves the surface would dip into the surface before.
+/// Returns a path up to the time at which the flow turns away from a holder. Components along the normals are removed.
+/// Otherwise a cubic whose end velocity leads away from the surface would dip into the surface before its end.
 ConstrainedFlow::Part ConstrainedFlow::until_release(const Path& path) const {
     const auto flow_at = [&](double s) { return flow_.velocity(path.position(s), state_.time + s); };
     const auto holds = [&](double s) {
@@ -359,14 +362,14 @@ Path ConstrainedFlow::lifted(Path path) const {
     if (lifting.empty()) return path;
     const Vec3 shift = shift_by(lifting.normals(), {lifts.data(), lifting.size()});
     path.end = flush_tiny(path.end + shift);
-    // A start below the contact offset must not lead into the surface.
+    // The path may start below the contact offset. It must not lead farther into the surface from there.
     path.c[1] += shift / path.duration;
     return path;
 }
 
-/// Returns a straight part of a path round an edge or a rim, over which the normal turns by at most chord_angle(). If
-/// the surface bends away, it is a tangent, and the flow presses the particle on again from its end. If the surface
-/// bends towards the particle, it is a chord.
+/// Shortens a path round an edge or a rim, so that the normal turns by at most chord_angle(). If the surface curves
+/// away from the particle, the path is a tangent. The flow then presses the particle onto the surface again after the
+/// end of the path. If the surface curves towards the particle, the path is a chord.
 Path ConstrainedFlow::along_curved(const ContactSurface& support, Path path) {
     const CollisionWorld::Nearest here = geometry_.nearest(support.surface, state_.position);
     const double turning =
@@ -386,8 +389,8 @@ Path ConstrainedFlow::along_curved(const ContactSurface& support, Path path) {
     return path;
 }
 
-/// Returns true if a path is too short to change anything: it takes no noticeable part of the step, and is shorter than
-/// the rounding of positions.
+/// Returns true if a path makes no progress: it takes a negligible part of the step, and is shorter than the rounding
+/// of positions.
 bool ConstrainedFlow::is_no_progress(double duration, const Vec3& velocity) const {
     return !(duration > kNoProgress * step_) && !(length(velocity) * duration > 0.25 * contact_offset(state_.position));
 }

@@ -1,13 +1,13 @@
 /// \file
 /// Private to the responses: the paths on which a flow carries a particle that touches surfaces.
 ///
-/// A touched surface holds the particle if the flow presses the particle onto it (see normal_accelerations()). A path
-/// follows the flow without its components along the normals of these surfaces. It ends when:
-/// - the flow turns away from one of the surfaces,
-/// - the particle reaches the end of one of them,
-/// - a curved one has turned enough. Along the side of a ball or a cylinder the limit is kMaxArcAngle, and the path is
-///   an arc with the order of the method. Round edges it is kMaxChordAngle, and more after many such chords in the
-///   step.
+/// A touched surface is a holder if the flow presses the particle onto it (see normal_accelerations()). A path follows
+/// the flow without its components along the normals of the holders. The path ends when:
+/// - the flow turns away from a holder,
+/// - the particle reaches the end of a holder,
+/// - the normal of a curved holder has turned by a limit. Along the side of a ball or a cylinder the limit is
+///   kMaxArcAngle, and the path is an arc with the order of the method. Round edges the path is a chord, and the limit
+///   is kMaxChordAngle. After many chords in the step this limit grows.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@
 
 namespace ricochet {
 
-/// The contact points that hold a particle, as numbers in the manifold.
+/// The holders of a particle, as numbers of their contact points in the manifold.
 class SupportSet {
 public:
     void add(std::size_t point, const Vec3& normal);
@@ -42,7 +42,7 @@ private:
 /// The flow for one particle in one step. Each call reads the current state of the particle and its manifold.
 class ConstrainedFlow {
 public:
-    /// All must outlive it. step: duration of the whole step, in s.
+    /// All referenced arguments must outlive the object. step: duration of the whole step, in s.
     ConstrainedFlow(const ResponseRules& rules, const SurfaceGeometry& geometry, const ForceInput& state,
                     ContactManifold& manifold, double step)
         : rules_(rules),
@@ -56,14 +56,15 @@ public:
     [[nodiscard]] Vec3 free_velocity() const { return flow_.velocity(state_.position, state_.time); }
     /// Returns the velocity of the flow without its component into the touched surfaces, in m/s.
     [[nodiscard]] Vec3 velocity() const;
-    /// Returns true if the flow at a time, in s, presses the particle onto a surface, at its present position. Also
-    /// true if it would carry the particle into a surface within kShortestRelease of the step.
+    /// Returns true if the flow at the particle's present position and a given time, in s, presses the particle onto a
+    /// surface. Also returns true if the flow would carry the particle into a surface within the fraction
+    /// kShortestRelease of a step.
     [[nodiscard]] bool leads_in(double time) const;
     /// Returns the time, in s, until leads_in() becomes false, at most `remaining`.
     [[nodiscard]] double time_to_release(double remaining) const;
 
-    /// Returns true if the flow carries the particle so little along surfaces in a duration, in s, that a path is of no
-    /// use. See kNoProgress.
+    /// Returns true if a path along surfaces for a duration, in s, would be too short to make progress. See
+    /// kNoProgress.
     [[nodiscard]] bool is_negligible_path(double duration) const;
 
     /// Returns the next path. It lasts at most `duration`, in s, and ends at most `reach`, in m, beyond the rim of a
@@ -75,10 +76,11 @@ public:
     [[nodiscard]] bool is_coarse() const { return is_coarse_; }
     /// Returns true if the last path was along surfaces.
     [[nodiscard]] bool is_held() const { return !holders_.empty(); }
-    /// Returns the round shapes along which the last path bends. It cannot hit them, see ContactQuery::supports.
+    /// Returns the round shapes that the last path follows on an arc. The path cannot hit them, see
+    /// ContactQuery::supports.
     [[nodiscard]] std::span<const SurfaceId> followed() const { return {followed_.data(), followed_count_}; }
-    /// Returns true if a path, after this time along it, in s, is back at a flat surface that the particle has just
-    /// left. The cubic dips into the surface although the flow does not.
+    /// Returns true if, at this time on the path, in s, the path is behind a flat surface that the particle has just
+    /// left. Such a cubic dips into the surface although the flow does not.
     [[nodiscard]] bool dips(const Path& path, double time) const;
 
 private:
@@ -111,7 +113,7 @@ private:
     const ForceInput& state_;
     ContactManifold& manifold_;
     double step_;
-    double next_duration_ = 0.0;  // s, of an adaptive method
+    double next_duration_ = 0.0;  // s, first trial of an adaptive method for the next path
     std::uint32_t substeps_ = 0;  // paths requested from the integrator
     bool is_coarse_ = false;
     SupportSet holders_;  // holders of the last path

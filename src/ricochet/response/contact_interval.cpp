@@ -11,8 +11,8 @@
 namespace ricochet {
 namespace {
 
-/// Largest number of consecutive plans that end at once. Then the last one counts. Local, because the next interval
-/// starts from its end.
+/// Largest number of consecutive plans for one interval. Another plan is made if a motion stops at once. The last plan
+/// is always accepted. Local, because the next interval continues from the end of this plan.
 constexpr int kMostPlans = 4;
 
 /// A resistance at a surface, and the motion that it resists.
@@ -45,8 +45,9 @@ bool are_at_rest(std::span<const SupportSurface> surfaces) {
     });
 }
 
-/// One plan: the forces on a motion, and the time for which they are constant. seen: the surfaces along which the
-/// motion is; the surfaces that hold it may have turned since.
+/// One plan: the forces on a moving particle, and the time for which they are constant. seen: the surfaces at the
+/// start, along which the given motion leads. surfaces: the same surfaces at the time for which forces are computed;
+/// their normals may have turned.
 class Plan {
 public:
     Plan(const Motion& motion, double radius, const Vec3& a, std::span<const SupportSurface> seen,
@@ -75,8 +76,8 @@ public:
         return interval;
     }
 
-    /// Returns true if a motion sticks that has not quite stopped. The resistance that holds it must not do work on
-    /// that rest.
+    /// Returns true if a resistance sticks although its motion has not completely stopped. The resistance must not do
+    /// work on this remaining motion.
     [[nodiscard]] bool drags(const ContactInterval& interval) const {
         return std::any_of(resistances_.begin(), resistances_.begin() + count_, [&](const Resistance& r) {
             StuckSurfaces stuck = interval.stuck;
@@ -143,7 +144,8 @@ private:
         return {normal_direction(surface.normal), dot(a_, surface.normal) + surface.curvature};
     }
 
-    /// Returns the closed form for one surface that resists nothing but slip; else std::nullopt.
+    /// Returns the closed form for a single surface without resistance to rolling and spinning. Returns std::nullopt
+    /// for other surfaces.
     [[nodiscard]] std::optional<SingleContactForces> forces_of_single_surface() const {
         if (surfaces_.size() != 1 || count_ > 1) return std::nullopt;
         if (count_ == 0) return solve_single_contact(contact(surfaces_[0]), nullptr, grip_.pressure);
@@ -156,7 +158,7 @@ private:
         CoulombProblem problem;
         for (const SupportSurface& surface : surfaces_) problem.add(contact(surface));
         for (const Resistance& r : resistances()) problem.add(resistance(r));
-        // A sliding particle can jam. For one at rest, a solution exists.
+        // Only a sliding particle can jam. For a particle at rest, a solution always exists.
         const bool slides =
             std::any_of(resistances().begin(), resistances().end(), [](const Resistance& r) { return r.speed > 0.0; });
         const auto effort = slides ? CoulombProblem::Effort::some : CoulombProblem::Effort::all;
@@ -175,13 +177,14 @@ private:
         accept(change);
     }
 
-    /// Sets the accelerations from a change of the motion. A change within rounding does not start a particle at rest.
+    /// Sets the accelerations from a change of the motion. A change within rounding does not set a resting particle in
+    /// motion.
     void accept(const MotionVector& change) {
         if (motion_.velocity == Vec3{} && length(acceleration_) <= kHoldRounding * scale()) acceleration_ = {};
         if (is_sphere()) spin_acceleration_ = (kTurning / radius_) * turning_of(change);
     }
 
-    /// Removes accelerations into the surfaces, if the forces are no solution.
+    /// Removes the accelerations into the surfaces. Needed if the solver has found no solution.
     void stay_on_surfaces() {
         std::array<Vec3, kMostSupports> normals;
         std::array<double, kMostSupports> lifts{};
@@ -195,8 +198,9 @@ private:
         acceleration_ += shift_by({normals.data(), count}, {lifts.data(), count});
     }
 
-    /// Returns the resistance against the heading of its motion, or against its rate in the middle of the interval.
-    /// Without motion, it is against the rate that the forces and the surfaces' curvature would cause.
+    /// Returns the equation of a resistance. The resistance opposes the direction of the motion at the start. For
+    /// solve_for_middle(), it opposes the motion in the middle of the interval instead. Without motion, the resistance
+    /// opposes the rate that the forces and the surfaces' curvature would cause.
     [[nodiscard]] CoulombResistance resistance(const Resistance& r) const {
         CoulombResistance result = at_rest(r);
         const bool is_implicit = weight_ > 0.0 && r.speed > 0.0;
@@ -242,7 +246,7 @@ private:
         return largest;
     }
 
-    /// Returns the rate at which the forces change the motion against a resistance, in m/s^2.
+    /// Returns the rate, in m/s^2, at which all forces change the motion that a resistance opposes.
     [[nodiscard]] Vec3 change_of(const Resistance& r) const {
         const SupportSurface& surface = surfaces_[r.surface];
         const Vec3& n = surface.normal;
@@ -255,7 +259,8 @@ private:
         return (dot(turning, n) + surface.spinning_curvature) * n;
     }
 
-    /// Returns the time, in s, until some friction has turned by kMaxHeadingTurn, or by more if that is very soon.
+    /// Returns the time, in s, until the direction of some resistance has turned by kMaxHeadingTurn. If this time is
+    /// very short, the direction may turn by up to kMostHeadingTurn.
     [[nodiscard]] double time_to_turn() {
         double duration = duration_;
         for (const Resistance& r : resistances()) {
@@ -275,7 +280,8 @@ private:
         return duration;
     }
 
-    /// Returns the time, in s, until some slip has changed by kMaxSlipChange, at least FrictionLimits::shortest.
+    /// Returns the time, in s, until some resisted motion has changed by kMaxSlipChange of its speed. The result is at
+    /// least FrictionLimits::shortest.
     [[nodiscard]] double time_to_change() {
         double duration = duration_;
         for (const Resistance& r : resistances()) {
@@ -285,8 +291,8 @@ private:
         return std::max(duration, grip_.shortest);
     }
 
-    /// Returns the angle, in rad, by which some friction turns. If its motion is braked to a stop, only the time until
-    /// then counts.
+    /// Returns the largest angle, in rad, by which the direction of a resistance turns in a duration, in s. If the
+    /// resisted motion stops earlier, only the time until then counts.
     [[nodiscard]] double turn_in(double duration) {
         double turn = 0.0;
         for (const Resistance& r : resistances()) {
@@ -299,7 +305,8 @@ private:
         return turn;
     }
 
-    /// Returns true if friction turns a motion faster than a step. Methods with stages cannot follow that.
+    /// Returns true if friction could stop a motion within the fraction 1 / kStageLimit of the duration, in s. An
+    /// explicit Runge-Kutta step would then be unstable.
     [[nodiscard]] bool is_stiff(double duration) {
         return std::any_of(resistances().begin(), resistances().end(), [&](const Resistance& r) {
             const SupportSurface& surface = surfaces_[r.surface];
@@ -312,9 +319,9 @@ private:
         });
     }
 
-    /// Gives friction its directions in the middle of the interval, which depend on friction itself: the implicit
-    /// midpoint rule, because a slow slip turns at once. If a motion would stop before the end, the middle is that of
-    /// its braking.
+    /// Sets the directions of friction to those in the middle of the interval. These directions depend on friction
+    /// itself. The rule is therefore implicit (midpoint rule), because a slow slip can turn in no time. If a motion
+    /// would stop before the end, the middle of the time until it stops is used.
     void solve_for_middle(double duration) {
         for (const Resistance& r : resistances()) {
             if (r.speed == 0.0) continue;
@@ -326,7 +333,8 @@ private:
         weight_ = 0.0;
         for (Resistance& r : resistances()) {
             const Vec3 middle = r.rate + (0.5 * duration) * change_of(r);
-            // A motion that has stopped by the middle has no direction there. It was braked along its first direction.
+            // A motion that has stopped by the middle has no direction there. Its resistance keeps the direction at the
+            // start.
             if (r.speed > 0.0 && length(middle) > kSlowSlip * r.speed) r.heading = normalized(middle);
         }
     }
@@ -347,14 +355,14 @@ private:
                 continue;
             }
             const double left = length(r.rate + interval.duration * change);
-            // On a slope near the angle of friction, the braking force is a small difference of large forces, and has
-            // their rounding.
+            // On a slope near the angle of friction, the braking force is a small difference of large forces. Its
+            // rounding error is therefore that of the large forces.
             const double rounding = kHoldRounding * scale() * interval.duration;
             const bool is_soon_over = left < kMostHeadingTurn * r.speed &&
                                       (left <= rounding || left * interval.duration <= grip_.negligible_path);
             sticks = left <= kStopRounding * r.speed || is_soon_over;
-            // This holds whatever else moves on: a slip this short only hides which surfaces hold the particle
-            // afterwards.
+            // Other motions may continue. The next plan, without this very short slip, shows which surfaces support the
+            // particle afterwards.
             if (sticks && r.speed * interval.duration <= grip_.negligible_path) interval.ends_at_once = true;
         }
     }
@@ -373,13 +381,14 @@ private:
     Vec3 spin_acceleration_;
     bool jams_ = false;  // the sliding motion has a solution only with less than full friction
     bool jams_in_middle_ = false;
-    double weight_ = 0.0;  // 1/s, weight of the present rates in the rates that friction is against; 0: their
-                           // directions count
+    // Factor, in 1/s, on the initial motions in the rates that friction opposes. 0: friction opposes the directions of
+    // the initial motions.
+    double weight_ = 0.0;
 };
 
-/// Returns true if the motion is negligible next to the effect of the forces in the duration, in s. If the particle
-/// would rest without it, it counts as at rest. Friction that jams would forever take a fraction of the remaining
-/// motion.
+/// Returns true if the motion is negligible compared with the velocity that the forces can cause in the duration, in s.
+/// A jammed particle is put at rest if it would rest without this motion. Otherwise each interval would remove only a
+/// fraction of the remaining motion, and the particle would never come to rest.
 bool hardly_moves(const Motion& motion, double radius, const Vec3& a, double duration) {
     const double speed = length(motion.velocity) + radius * length(motion.spin);
     return motion.velocity != Vec3{} && speed <= kNegligibleSpeed * length(a) * duration;

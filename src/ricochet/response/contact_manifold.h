@@ -28,7 +28,7 @@ struct TouchRule {
     double overlap = 0.0;     ///< m, largest overlap of a sphere with the surface
     double beyond_rim = 0.0;  ///< m, largest distance of a point beside a flat surface from its rim
     double separation_speed =
-        std::numeric_limits<double>::infinity();  ///< m/s along the normal, above which the particle has left
+        std::numeric_limits<double>::infinity();  ///< m/s along the normal; a faster particle has left the surface
 };
 
 /// The surfaces that a particle has touched last, at most six, in the order of their slots in a ring buffer.

@@ -39,7 +39,7 @@ double exponential(RandomSequence& random) {
 }
 
 /// Returns the weights of the vectors whose bits in `chosen` are set. Their weighted sum is nearest to r. At most three
-/// vectors, not parallel.
+/// vectors are allowed, and no two may be parallel.
 std::array<double, 3> weights_of(const Vec3& r, std::span<const Vec3> n, unsigned chosen) {
     std::array<std::size_t, 3> at{};
     std::size_t count = 0;

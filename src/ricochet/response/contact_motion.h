@@ -21,9 +21,9 @@ struct Motion {
 [[nodiscard]] Vec3 slip_velocity(const Motion& motion, double radius, const Vec3& n);
 
 /// Returns the motion after an impact on a fixed wall of unit normal n. The normal velocity is reversed and scaled by
-/// the restitution (Newton). The tangential impulse sticks if that needs at most friction times the normal impulse, and
-/// slips otherwise (Coulomb). A motion that does not approach the wall (v . n >= 0) is returned unchanged. A point
-/// without losses (restitution 1, friction 0) keeps its speed to rounding over any number of bounces. Method:
+/// the restitution (Newton). The contact sticks if the tangential impulse needed is at most friction times the normal
+/// impulse. Otherwise it slips (Coulomb). A motion that does not approach the wall (v . n >= 0) is returned unchanged.
+/// A point without losses (restitution 1, friction 0) keeps its speed to rounding over any number of bounces. Method:
 /// impulse-based contact of a solid sphere, e.g. S. F. Foerster et al., "Measurements of the collision properties of
 /// small spheres", Physics of Fluids 6, 1994.
 [[nodiscard]] Motion bounce(const Motion& motion, double radius, const Vec3& n, double restitution, double friction);

@@ -11,11 +11,11 @@ namespace ricochet {
 namespace {
 
 /// Largest number of steps of Newton's method, and of halvings of one step. Four or five steps usually suffice. More
-/// steps do not help if the iteration cycles. Local: a limit of this search, whose result is checked.
+/// steps do not help if the iteration cycles. Local, because the result of the search is checked.
 constexpr int kNewtonSteps = 14;
 constexpr int kHalvings = 4;
-/// Number of sweeps before the first comparison of changes, see kSteadyChange. Local: a search, whose result is
-/// checked.
+/// Number of sweeps before the first comparison of changes, see kSteadyChange. Local, because the result of the search
+/// is checked.
 constexpr int kFirstComparison = 32;
 
 }  // namespace

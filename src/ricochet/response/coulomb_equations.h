@@ -32,7 +32,7 @@ using MotionVector = std::array<double, 6>;
 /// One contact: 0 <= N, 0 <= rate, N rate = 0.
 struct CoulombContact {
     MotionVector direction{};  ///< the surface's normal
-    double rate = 0.0;         ///< rate along the direction, of the motion without forces
+    double rate = 0.0;         ///< rate along the direction if no contact force acts
 };
 
 /// One resistance at a contact: |T| <= bound N. If a rate remains, T opposes it with the largest allowed force.
@@ -41,8 +41,8 @@ struct CoulombResistance {
     std::uint32_t size = 2;     ///< 1 or 2 directions
     double bound = 0.0;         ///< >= 0: a coefficient of friction, or a length over the radius
     std::array<MotionVector, 2> direction{};
-    std::array<double, 2> rate{};     ///< rates along the directions, of the motion without forces
-    bool is_moving = false;           ///< true: it acts against `heading`, independently of the rates
+    std::array<double, 2> rate{};     ///< rates along the directions if no contact force acts
+    bool is_moving = false;           ///< true: the resistance acts against `heading`, independently of the rates
     std::array<double, 2> heading{};  ///< unit vector; used if `is_moving`
 };
 

@@ -10,26 +10,26 @@
 namespace ricochet {
 namespace {
 
-/// Number of Gauss-Seidel sweeps before Newton's method is tried again. anew: true if they start from zero forces.
-/// Local: starting points of this search.
+/// Number of Gauss-Seidel sweeps before Newton's method is tried again. anew: true if the sweeps start from zero
+/// forces. Local, because these are only starting points of a search.
 struct Start {
     bool anew;
     int sweeps;
 };
 constexpr std::array<Start, 5> kStarts{{{false, 20}, {true, 30}, {false, 300}, {true, 1000}, {true, 6000}}};
-/// Number of short starts. Longer starts are tried only once per problem, with its full friction. Reason: they start
-/// from zero forces, so a failure at one compliance repeats at the next. Local: a limit of this search, whose result is
-/// checked.
+/// Number of short starts. Longer starts are tried only once per problem, with its full friction. Reason: longer starts
+/// begin with zero forces, so a failure at one compliance repeats at the next. Local, because the result of the search
+/// is checked.
 constexpr std::size_t kShortStarts = 3;
 /// Compliances at which another solution with full friction is searched for if forces diverge. The second array
 /// contains the numbers of sweeps from zero forces at each compliance. One in a hundred of 1200 random problems with
-/// diverging forces has such a solution. Local: starting points of this search.
+/// diverging forces has such a solution. Local, because these are only starting points of a search.
 constexpr std::array kOthersAt{kStiffCompliance, 1e-8, 1e-6};
 constexpr std::array kSweepsToOther{30, 300};
 /// First and last compliance of a short search, and number of sweeps before its second attempt. Reason: this search
 /// solves all but one of 1600 problems of a ball that rolls over concave edges. Continuation from soft contacts solves
 /// only half of them. One in eighty of the random problems that both solve has several solutions, and the searches find
-/// different ones. Local: starting points of this search, whose result is checked.
+/// different ones. Local, because the result of the search is checked.
 constexpr std::array kStiffAtOnce{1e-6, kStiffCompliance};
 constexpr int kSweepsAtOnce = 3;
 /// Largest factor between successive compliances in a short search, number of parts in which friction is increased, and
@@ -144,7 +144,7 @@ CoulombProblem::Reached CoulombProblem::Reached::next(double value, double large
     return {value, largest, value * largest >= kSteadyGiving * compliance * force};
 }
 
-/// Returns true if forces grow so much, as contacts become stiffer, that contacts yield as much as before. This
+/// Returns true if forces diverge as contacts become stiffer: the contacts yield as much as with lower stiffness. This
 /// solution then has no rigid limit. is_found: true if the solution at `compliance` is known; otherwise earlier growth
 /// decides.
 bool CoulombProblem::runs_away(const Reached& reached, double compliance, bool is_found) const {
@@ -159,7 +159,7 @@ bool CoulombProblem::runs_away(const Reached& reached, double compliance, bool i
 /// redundant contacts a large one. Each compliance is used while an iteration reduces the residual to less than a
 /// tenth.
 void CoulombProblem::make_rigid() {
-    // Local: steps of this search, whose success find_defects() decides.
+    // Local, because find_defects() decides whether the search has succeeded.
     constexpr std::array kCompliances{1e-8, 1e-10, 1e-12, 1e-14, 1e-6, 1e-4};
     double residual = equations_.find_defects({});
     for (const double compliance : kCompliances) {

@@ -42,9 +42,10 @@ public:
     /// all contacts. Otherwise wedging can prevent a solution. friction: factor on all bounds, 0..1.
     bool solve(Effort effort, double friction = 1.0);
 
-    /// Solves the problem with the largest part of the friction for which a solution is found, and returns this part.
-    /// Conditions met only to kNearlySolved suffice, because rounding can prevent more between surfaces that press
-    /// against each other. Smaller parts, down to zero, are tried with an effort of at most `most`.
+    /// Solves the problem with the largest part of the friction for which a solution is found, and returns this part. A
+    /// solution is accepted if its residual is at most kNearlySolved. Rounding can prevent a smaller residual if
+    /// surfaces press against each other. Parts below the full friction, down to zero, are tried with an effort of at
+    /// most `most`.
     double solve_with_most(Effort effort, double friction = 1.0);
 
     /// Returns false if the last solution meets the conditions only to kNearlySolved, or not at all.

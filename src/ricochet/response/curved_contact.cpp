@@ -11,8 +11,8 @@
 namespace ricochet {
 namespace {
 
-/// Corrections of the position and of the energy. Each squares the relative error. Local: it ends below the rounding of
-/// the result.
+/// Number of corrections of the position and of the energy. Each correction squares the relative error. Local, because
+/// the last correction is below the rounding of the result.
 constexpr int kCorrections = 3;
 
 }  // namespace
@@ -66,8 +66,8 @@ CurvedContact::State CurvedContact::at(double t) const {
 /// Integrates by the implicit midpoint rule for friction and resistance, with the surfaces in the middle of the
 /// interval. A slip that soon ends, or has just begun, turns faster than the stages of an explicit method can follow.
 CurvedContact::State CurvedContact::by_midpoint_rule(double t) const {
-    // Local: a particle that is jammed between surfaces stops again in every part, and then stays for the rest of the
-    // time.
+    // Local, because only a particle that is jammed between surfaces reaches this limit. It stops again in every part,
+    // and keeps its position for the rest of the time.
     constexpr int kMostParts = 8;
     State state = start();
     double elapsed = 0.0;
@@ -102,12 +102,13 @@ Vec3 CurvedContact::spin_change(const State& state, double t) const {
     return start_.frame->spin_change(state.motion.spin, particle_.time + t);
 }
 
-/// Returns the power of that change over the mass, in m^2/s^3.
+/// Returns the power per unit mass, in m^2/s^3, of a change of the spin, in rad/s^2.
 double CurvedContact::spin_power(const State& state, const Vec3& change) const {
     return 0.4 * particle_.radius * particle_.radius * dot(state.motion.spin, change);
 }
 
-/// Returns the surfaces with the contributions of the frame's motion to the rates of slip and rotation.
+/// Returns the surfaces in a state. Adds the effect of the frame's motion on slip and rotation to their curvature
+/// terms.
 CurvedContact::SupportList CurvedContact::supports(const State& state, double t) const {
     SupportList result = supports(state);
     const Vec3 change = spin_change(state, t);
@@ -146,8 +147,8 @@ CurvedContact::State CurvedContact::by_stages(double t) const {
         t);
 }
 
-/// Returns the error over the tolerance: the difference between the method and the midpoint rule, which is of second
-/// order.
+/// Returns the estimated error divided by the tolerance. The estimate is the difference between the Runge-Kutta method
+/// and the midpoint rule, which is of second order.
 double CurvedContact::error_of(double t) const {
     const State begin = start();
     if (!(particle_.time + 0.5 * t > particle_.time)) return 0.0;
@@ -165,11 +166,12 @@ double CurvedContact::error_of(double t) const {
                     displacement / start_.tolerance->position);
 }
 
-/// Returns a time, in s, of at most `duration`, in which the error is within the tolerance. The error grows with the
-/// cube of the time. As in all step control, the next trial is a little shorter than that law gives (E. Hairer, S.
-/// Norsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., Springer 1993, section II.4).
+/// Returns a time, in s, of at most `duration`, in which the error is within the tolerance. The error is proportional
+/// to the cube of the time. The next trial is slightly shorter than the time that follows from this law, as usual in
+/// step control (E. Hairer, S. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., Springer 1993,
+/// section II.4).
 double CurvedContact::longest_within_tolerance(double duration) const {
-    // Local: a rule of this step control. error_of() decides.
+    // Local, because error_of() decides whether a time is accepted.
     constexpr double kSafety = 0.9;
     constexpr double kLeast = 0.01;
     constexpr double kMost = 0.5;
@@ -246,15 +248,17 @@ double CurvedContact::longest() const {
     return varies ? longest_within_tolerance(duration) : duration;
 }
 
-/// Returns the time, in s, in which forces turn the motion only a little, along surfaces of a curvature, in 1/m.
+/// Returns a time, in s, in which the motion under the forces turns only a little, on surfaces of the given curvature,
+/// in 1/m.
 double CurvedContact::longest_swing(double curvature) const {
     const double acceleration = length(rate_at_start().acceleration);
-    // As a surface turns, forces that press on it come to pull along it, in the end with their full size.
+    // A force that presses on the surface here acts along the surface after a quarter turn. The particle therefore
+    // swings like a pendulum with this frequency.
     const double frequency = std::sqrt(curvature * length(forces_at_start_));
     return std::min(std::sqrt(2.0 * kMaxArcAngle / (curvature * acceleration)), kMaxArcPhase / frequency);
 }
 
-/// Returns the surfaces as the particle touches them in a state.
+/// Returns the supporting surfaces with their normals, velocities and curvature terms in a state.
 CurvedContact::SupportList CurvedContact::supports(const State& state) const {
     SupportList result = materials_;
     for (std::size_t k = 0; k < result.count; ++k) {
@@ -310,7 +314,8 @@ const CurvedContact::Rate& CurvedContact::rate_at_start() const {
     return *rate_at_start_;
 }
 
-/// Moves the state to the contact offset from the surfaces with load, along their normals, and its motion along them.
+/// Moves the position along the normals of the loaded surfaces to the contact offset from them. Then projects the
+/// motion onto the directions along these surfaces.
 void CurvedContact::put_on_surfaces(State& state) const {
     for (int k = 0; k < kCorrections; ++k) {
         std::array<Vec3, kMostSupports> normals;
@@ -349,8 +354,9 @@ bool CurvedContact::dissipates() const {
     return false;
 }
 
-/// Returns true if the particle turns against resistance between several surfaces. They may brake it by as much as they
-/// press against each other. The stages of one arc would find it braked in one stage and free in another.
+/// Returns true if the particle rolls or spins against resistance between several surfaces. The resistance can then be
+/// arbitrarily large, because the surfaces can press against each other. Some stages of a Runge-Kutta step would see a
+/// braked particle, and others a free one.
 bool CurvedContact::may_jam() const {
     if (particle_.radius == 0.0 || std::count(has_load_.begin(), has_load_.end(), true) < 2) return false;
     for (std::size_t k = 0; k < materials_.count; ++k) {
@@ -382,7 +388,7 @@ bool CurvedContact::begins_to_slip(const ContactInterval& now) const {
     return false;
 }
 
-/// Returns the work of the forces over the mass since the start, in m^2/s^2.
+/// Returns the work of the forces per unit mass since the start, in m^2/s^2.
 double CurvedContact::work_until(const State& state) const {
     if (!start_.has_forces) return 0.0;
     if (!has_potential_) return dot(forces_at_start_, state.position - particle_.position) + state.work;
@@ -393,8 +399,8 @@ double CurvedContact::work_until(const State& state) const {
     return (before - forces_.potential_energy(there).value_or(0.0)) / particle_.mass;
 }
 
-/// Moves a state to the nearest one with the energy at the start: along the path if the particle is slow, in speed
-/// otherwise.
+/// Corrects a state so that the energy equals the energy at the start. For a slow particle the correction mainly
+/// changes the position, otherwise the speed.
 void CurvedContact::restore_energy(State& state, double t) const {
     const Vec3 a = forces(state, 0.0);
     for (int k = 0; k < kCorrections; ++k) {

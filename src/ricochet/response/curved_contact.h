@@ -21,7 +21,7 @@
 
 namespace ricochet {
 
-/// Start of an arc, besides the particle.
+/// Inputs of an arc besides the particle's state.
 struct CurvedStart {
     Vec3 spin;                                  ///< rad/s
     double pressure = 1.0;                      ///< as FrictionLimits::pressure
@@ -39,9 +39,9 @@ public:
     struct State {
         Vec3 position;
         Motion motion;
-        double work = 0.0;  ///< over the mass, m^2/s^2, by the change of the forces since the start
+        double work = 0.0;  ///< m^2/s^2, work per unit mass of the forces minus that of the forces at the start
         double turned =
-            0.0;  ///< turn of a shape's normal below a sphere since the start: chord of the largest one, 0 to 2
+            0.0;  ///< largest change of a touched shape's unit normal since the start: length of the vector, 0 to 2
     };
 
     CurvedContact(const SurfaceGeometry& geometry, const ForceField& forces, const ForceInput& particle,
@@ -50,8 +50,8 @@ public:
 
     /// Returns the plan at the start, as if the surfaces were flat: whether the particle rests, and the forces.
     [[nodiscard]] const ContactInterval& plan() const { return plan_; }
-    /// Returns the state after t, in s, by the classical Runge-Kutta method or the midpoint rule. It is on the surfaces
-    /// that hold the particle, moves along them, and has the right energy.
+    /// Returns the state after t, in s, by the classical Runge-Kutta method or the midpoint rule. The state lies on the
+    /// supporting surfaces, moves along them, and has the correct energy.
     [[nodiscard]] State at(double t) const;
     /// Change of the support since the start: none; a stuck contact slips; a slipping contact jams; a surface has
     /// turned further than an arc allows; or nothing holds the particle.
@@ -69,7 +69,8 @@ public:
     /// Returns the time, in s, until the particle has turned by kMaxArcAngle, or a motion is about to stick.
     [[nodiscard]] double longest() const;
 
-    /// Returns the acceleration, in m/s^2, that a surface's curvature adds to the distance from it at this velocity.
+    /// Returns the contribution, in m/s^2, of a surface's curvature to the second derivative of the distance from it,
+    /// at this velocity.
     [[nodiscard]] static double curvature_of(const SurfaceGeometry& geometry, const ForceInput& particle,
                                              const ContactSurface& surface, const Vec3& velocity);
 

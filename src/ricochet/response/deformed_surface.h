@@ -42,9 +42,9 @@ struct CurvatureTerms {
                                           const ContactSurface& surface);
 
 /// Returns the time, in s since the start of a trajectory, at which the trajectory leaves all triangles of a contact
-/// with a face. It has not left them while it is no farther beside all their rims than at its start. Returns `duration`
-/// if it does not leave them. The result is slightly later than the exact time. begin: time at the start, in s.
-/// position_at: position, in m, at a time since the start, in s.
+/// with a face. The trajectory has left them when its distance from the nearest triangle, along the triangle's plane,
+/// is larger than at the start. Returns `duration` if it does not leave them. The result is slightly later than the
+/// exact time. begin: time at the start, in s. position_at: position, in m, at a time since the start, in s.
 [[nodiscard]] double time_over(const DeformingColliders& deforming, const DeformedContact& contact,
                                const std::function<Vec3(double)>& position_at, double duration, double begin);
 

@@ -304,7 +304,7 @@ void EventIsland::find_next(std::size_t m) {
 /// Predicts new paths of changed members, and finds the next contacts with them.
 void EventIsland::predict_anew(const std::vector<std::size_t>& changed) {
     const auto is_changed = [&](std::size_t m) { return std::binary_search(changed.begin(), changed.end(), m); };
-    std::vector<std::size_t> left;  // members whose partners have changed
+    std::vector<std::size_t> left;  // unchanged members whose next contact was with a changed member
     for (const std::size_t m : changed) {
         for (const std::uint32_t other : neighbours_.of(m)) {
             const bool is_left = partners_[other] == m && std::isfinite(times_.time_of(other));
@@ -342,7 +342,7 @@ std::vector<PairContact> EventIsland::contacts_at(double time) const {
     times_.collect(until, first);
     for (const std::size_t m : first) {
         for (const std::uint32_t other : neighbours_.of(m)) {
-            const bool is_known = other < m && times_.time_of(other) <= until;  // found from the other member
+            const bool is_known = other < m && times_.time_of(other) <= until;  // already found from the other member
             if (is_known) continue;
             const auto meeting = meeting_of(m, other);
             if (meeting && *meeting <= until) {

@@ -74,9 +74,9 @@ Vec3 ImpulseRecorder::couple_of(const Vec3& spin_change) const {
     return (-0.4 * particle_.state.mass * radius * radius) * spin_change;
 }
 
-/// Returns the work, in J, of a load by the surface's own motion (a conveyor belt), at one moment. The impulse does
-/// work on the velocity of the material at the contact. The couple minus the moment of the impulse is a resistance to
-/// rolling or spinning. This resistance does work on the angular velocity of the material.
+/// Returns the work, in J, that a load does because the surface's material moves (a conveyor belt), with the motion at
+/// a moment. The impulse does work on the velocity of the material at the contact. The couple minus the moment of the
+/// impulse is a resistance to rolling or spinning. This resistance does work on the angular velocity of the material.
 double ImpulseRecorder::work_on_material(const ColliderLoad& load, BodyId body, const Moment& at) const {
     const Material& material = rules_.materials[rules_.world.material_of(load.surface)];
     if (!material.drives()) return 0.0;
@@ -145,9 +145,9 @@ void ImpulseRecorder::enter_lasting(ColliderLoad& load, BodyId body) const {
     load.moment += cross(0.5 * (origin(until_.time) - origin(since_.time)), load.impulse);
 }
 
-/// Returns the work, in J, of a load with the body's motion at the start of its interval. The moment is that at the end
-/// of the interval. For moving surfaces, a couple is recorded for its difference from the particle's loss of angular
-/// momentum.
+/// Returns the work, in J, that a load would do with the motion that the body has at a moment. The impulse acts at the
+/// particle's position at the end of the interval. For moving surfaces, a separate couple records the resulting
+/// difference from the particle's loss of angular momentum.
 double ImpulseRecorder::work_at(const ColliderLoad& load, BodyId body, const Moment& at) const {
     const MovingPose pose = rules_.bodies.pose(body, at.time);
     const Vec3 moment = cross(load.particle_center - pose.world_from_frame.translation, load.impulse) + load.couple;

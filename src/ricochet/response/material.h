@@ -37,13 +37,14 @@ struct Material {
     double restitution = 1.0;            ///< rebound speed over approach speed along the normal, 0..1
     double friction = 0.0;               ///< Coulomb coefficient, >= 0, for impacts and for sliding
     double restitution_threshold = 0.0;  ///< m/s, >= 0; below this approach speed restitution falls linearly to 0
-    double rolling_friction = 0.0;       ///< resisting moment over radius times normal force, >= 0; for rolling spheres
+    double rolling_friction = 0.0;       ///< resisting moment / (radius * normal force), >= 0; for rolling spheres
     double diffuse = 0.0;                ///< accommodation: fraction of impacts reflected by the cosine law, 0..1
     /// Temperature of the wall, in K, > 0. Diffusely reflected particles leave with thermal speeds of this temperature,
     /// or with their approach speed if it is not set.
     std::optional<double> wall_temperature = std::nullopt;
     double absorption = 0.0;  ///< fraction of impacts that remove the particle, 0..1
-    /// Moment that resists spinning about the normal over the normal force, in m, >= 0. For spheres in lasting contact.
+    /// Ratio of the moment that resists spinning about the normal to the normal force, in m, >= 0. For spheres in
+    /// lasting contact.
     double spinning_friction = 0.0;
     /// Motion of the material. Friction, resistance to rolling and spinning, and diffuse reflection are relative to it.
     SurfaceMotion motion = {};

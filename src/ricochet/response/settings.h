@@ -60,7 +60,7 @@ enum class PairMethod {
 struct PairMaterial {
     double restitution = 1.0;       ///< separation speed over approach speed along the normal, 0..1
     double friction = 0.0;          ///< Coulomb coefficient, >= 0
-    double rolling_friction = 0.0;  ///< resisting moment over reduced radius times normal impulse, >= 0
+    double rolling_friction = 0.0;  ///< resisting moment / (reduced radius * normal impulse), >= 0
 };
 
 /// Contact parameters for spheres of two materials, in either order, or of one material if both names are equal.

@@ -31,8 +31,8 @@ constexpr int kMostSteps = 80;
 constexpr double kDefect = 0.25;
 constexpr double kViolated = 0.5;
 
-/// Largest slope at the end of a line search, relative to the slope at its start, and largest number of trials.
-/// Local: a rule of this line search.
+/// Largest slope at the end of a line search, relative to the slope at its start, and largest number of trials. Local,
+/// because the residual decides when a solution is accepted.
 constexpr double kSlopeLeft = 0.2;
 constexpr int kMostTrials = 40;
 

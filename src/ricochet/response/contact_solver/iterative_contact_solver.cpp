@@ -13,9 +13,9 @@ namespace {
 /// Contacts per block of parallel work. Sums are computed by these blocks for any number of threads.
 constexpr std::size_t kBlock = 512;
 
-/// Number of restarts after which the number of sweeps without momentum after each restart grows by one. Reason:
-/// friction can make the iteration cycle. Large networks that converge restart a few dozen times. Local: the residual
-/// decides when the iteration ends.
+/// Number of restarts per additional sweep without momentum. After this many restarts, one such sweep follows each
+/// restart, after twice as many two. Reason: friction can make the iteration cycle. Large networks that converge
+/// restart a few dozen times. Local, because the residual decides when the iteration ends.
 constexpr int kRestartsAPlainSweep = 64;
 
 /// Returns the limits for a tolerance in m/s.

@@ -16,7 +16,8 @@ namespace {
 constexpr int kCorrections = 3;
 
 /// Corrections of the end of a chord between moving surfaces and others. In a wedge, each correction undoes a part of
-/// the one before. Three quarters per pass leave 1e-4. Local, because the segment is certified before use.
+/// the one before. If each pass leaves three quarters of the error, 1e-4 of it remains at the end. Local, because the
+/// segment is certified before use.
 constexpr int kCorrectionsInWedge = 32;
 
 /// The move of one particle.
@@ -129,8 +130,8 @@ void PlannedMove::cut_across() {
     if (contact) divert(*contact);
 }
 
-/// Moves a position once off the walls that the particle would touch there at a time, in s. Returns true if it touches
-/// none.
+/// Moves a position off the walls that the particle would touch there at a time, in s. Makes a single pass. Returns
+/// true if the particle would touch no wall at the given position, which then stays the same.
 bool PlannedMove::keep_off_walls(Vec3& end, double time) const {
     std::vector<WallContact> walls;
     find_walls(end, time, walls);
@@ -240,8 +241,8 @@ bool PlannedMove::touches(SurfaceId surface) const {
     return distance - state.radius <= kStillTouched * state.radius + 4.0 * contact_offset(state.position);
 }
 
-/// Returns a velocity without its parts into the surfaces in met_. If they block every direction, returns the velocity
-/// of one of these surfaces.
+/// Returns a velocity without its components into the surfaces in met_. If they block every direction, returns the
+/// velocity of one of these surfaces.
 Vec3 PlannedMove::along_those_met(const Vec3& velocity) const {
     std::vector<Vec3> normals;
     std::vector<double> missing;

@@ -28,8 +28,8 @@ struct PlannedMotion {
 /// Moves a particle along the straight line of its planned velocity, in certified segments. If a surface blocks the
 /// line, the particle continues along that surface. This is no impact, because the plan contains all impacts, but the
 /// velocity into the surface is lost. Among moving colliders, each line ends clear of the moving surfaces that push or
-/// block the particle, at their positions at the end of the step. Earlier contacts of the particle end. The motion is
-/// recorded as driven, because other particles take part in its energy.
+/// block the particle, at their positions at the end of the step. The particle's contacts from the last step end. The
+/// motion is recorded as driven, because other particles take part in its energy.
 [[nodiscard]] MoveOutcome move_as_planned(const ResponseRules& rules, MovingParticle& particle,
                                           const PlannedMotion& plan, MoveScratch& scratch);
 

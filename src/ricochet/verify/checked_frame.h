@@ -58,8 +58,8 @@ public:
 
     /// Calls found(collider, triangle or nothing) for every surface that overlaps a sphere about a point, in any order.
     /// Overlaps of up to 1e-12 of the sphere's radius and coordinates are ignored. largest: largest world coordinate of
-    /// the sphere's centre on its path to the point, in m. way: length of this path, in m. The coordinates in the frame
-    /// exceed those at the end of the path by at most this length.
+    /// the sphere's centre on its path to the point, in m. way: length of this path, in m. On the path, the centre's
+    /// coordinates in the frame exceed the coordinates of the point by at most this length.
     template <class Found>
     void visit_overlapped(const Vec3& world, double time, double radius, double largest, double way,
                           const Found& found) const {

@@ -17,8 +17,9 @@ using Digits = boost::multiprecision::cpp_bin_float_50;
 /// rounding changes the lengths of its columns by about 2^-52. Local: a tolerance for the rounding of input values.
 constexpr double kEqualAxes = 0x1p-49;
 
-/// Error bound of doubles: of a local coordinate, relative to the distance from the centre, and of a sum, relative to
-/// its terms. The bound covers about 6 roundings of 2^-53. Local: an error bound of the formulas in this file.
+/// Error bound of a computation in doubles. For a local coordinate it is relative to the distance from the centre, for
+/// a sum it is relative to the terms. The bound covers about 6 roundings of 2^-53. Local: an error bound of the
+/// formulas in this file.
 constexpr double kRoughError = 0x1p-49;
 
 /// Margin for rounding around the box of a shape, relative to the size and position of the box. Local: an error bound
@@ -294,8 +295,8 @@ bool CheckedShape::intersects(const Vec3& p, const Vec3& q) const {
 }
 
 /// The body is convex, so a segment from its surface to an inner point is inside. A segment to an outer point is
-/// outside unless it enters the body. If the segment enters the body, the point after 2^-40 of its length is inside, or
-/// the part inside is shorter than that.
+/// outside unless it enters the body. If the segment enters the body, its point at the fraction 2^-40 of its length is
+/// inside. A shorter part inside is ignored.
 bool CheckedShape::intersects_after_start(const Vec3& p, const Vec3& q) const {
     const int of_q = side(q);
     if (of_q <= 0) return of_q == 0;

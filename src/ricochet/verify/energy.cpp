@@ -21,8 +21,7 @@ Long kinetic(const RecordedMotion& motion, double radius) {
     return (product(motion.velocity, motion.velocity) + inertia * product(motion.spin, motion.spin)) / 2;
 }
 
-/// Returns the work per unit mass of a constant force between both ends of a part, in m^2/s^2. force: force per unit
-/// mass.
+/// Returns the work per unit mass, in m^2/s^2, of a constant force in a part of the motion. force: force per unit mass.
 Long work(const Vec3& force, const MotionPart& part) {
     return product(force, part.end.position) - product(force, part.begin.position);
 }

@@ -85,7 +85,8 @@ bool has_wrong_rebound(const RecordedImpact& impact) {
         if (more < -rounding) return true;
         if (is_hit(surface)) least = std::min(least, more);
     }
-    // At least one hit surface must give an impulse, so the particle must not leave it faster than required.
+    // At least one of the hit surfaces must give an impulse. The particle must therefore not leave all hit surfaces
+    // faster than required.
     return hit > 0 && least > rounding;
 }
 

@@ -294,8 +294,8 @@ private:
     }
 
     /// Returns candidate directions along which the point may be beyond the whole triangle. The last two directions are
-    /// for triangles with almost no area, which are treated as their longest edge. One points from the edge to the
-    /// point. The other is perpendicular to the edge and to the path of the point relative to the edge.
+    /// for triangles with almost no area, which are treated as their longest edge. The first of these leads from the
+    /// edge to the point. The second is perpendicular to the edge and to the path of the point relative to the edge.
     template <class Real>
     [[nodiscard]] std::array<Vector<Real>, 7> directions_at(double middle, double begin, double end) const {
         const Vector<Real> p = at<Real>(point_, middle);

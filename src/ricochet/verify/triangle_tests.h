@@ -34,8 +34,8 @@ struct Corners {
 /// Returns true if the closed segment [p, q], which may be a point, and the closed triangle have a point in common.
 [[nodiscard]] bool intersects(const Vec3& p, const Vec3& q, const Corners& triangle);
 
-/// Returns true if a point of the segment other than its start lies on the triangle. The start may also lie on the
-/// triangle.
+/// Returns true if a point of the segment other than its start lies on the triangle. The start itself is allowed to lie
+/// on the triangle, too.
 [[nodiscard]] bool intersects_after_start(const Vec3& p, const Vec3& q, const Corners& triangle);
 
 /// Returns the approximate point at which [p, q] crosses the triangle's plane, or p if the segment lies in this plane.

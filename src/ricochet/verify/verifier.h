@@ -43,7 +43,7 @@ enum class ViolationKind : std::uint8_t {
     energy,
     pair_overlap,  ///< a sphere overlaps another sphere, see verify/sphere_overlaps.h
     pair_impact,   ///< an impact between spheres fails the audit, see verify/impact_audit.h
-    rebound,       ///< the rebound of an impact does not agree with its surfaces
+    rebound,       ///< the rebound of an impact does not agree with the restitution of the surfaces
 };
 
 /// One violation. It is reported once, because later steps are checked against the new state.
@@ -51,10 +51,11 @@ struct Violation {
     ViolationKind kind = ViolationKind::crossing;
     std::uint64_t particle = 0;  ///< id
     Vec3 position;               ///< position of a crossing (rounded), otherwise of the particle's centre, in m
-    /// Time, in s: the start of the flight for a crossing, the start of the part for energy, and otherwise the end of
-    /// the step.
+    /// Time, in s. A crossing has the start time of the flight or contact phase. A pair_impact or rebound has the time
+    /// of the impact. An energy violation has the start time of the recorded part of the motion. Other violations have
+    /// the end time of the step.
     double time = 0.0;
-    /// Index of the collider; nothing for a gap, energy, a rebound, and violations between spheres.
+    /// Index of the collider. Nothing for the kinds gap, energy and rebound, and for violations between spheres.
     std::optional<std::uint32_t> collider;
     /// Index in the collider's mesh; nothing for planes, shapes and wrong sides.
     std::optional<std::uint32_t> triangle;

@@ -115,7 +115,7 @@ public:
     ActiveMover(const MoverParts& parts, const Response& response) : parts_(parts), response_(response) {}
 
     [[nodiscard]] const Response& response() const { return response_; }
-    /// Returns a mover of the same particles by another response, which must outlive it.
+    /// Returns a mover that moves the same particles by another response. The response must outlive the mover.
     [[nodiscard]] ActiveMover with(const Response& response) const { return {parts_, response}; }
     /// Resets the counts of bounces, because a bounce budget applies to a whole step. Must be called at the start of a
     /// step that dynamic bodies or coupled motion may divide into substeps.

@@ -122,8 +122,8 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
             });
         if (is_too_much) return end_of(before, preview[first - 1].time, preview[first].time);
         // A particle that waits for a body moves with the body's surface and not in the direction of its own momentum.
-        // A couple on the body then conserves the angular momentum. The couple of a heavy particle turns the body by
-        // much, so the substep ends soon.
+        // A couple on the body then conserves the angular momentum. The couple of a heavy particle turns the body
+        // strongly, so the substep ends soon.
         if (is_heavy && parts_ < kManyParts) {
             const double until = next < preview.size() ? preview[next].time : end;
             return std::min(end, soon_after_impact(preview[first].time, until));
@@ -133,7 +133,8 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
 }
 
 RestingLoad DrivenMotion::resting_load_on(std::size_t body, std::span<const ColliderLoad> preview, double until) const {
-    // If the plan is not cut, all loads of the preview count. Rounding may give a load a time slightly after the plan.
+    // If the substep is not cut before the end of the plan, all loads of the preview are included. Rounding may give a
+    // load a time slightly after that end.
     const bool is_whole = until >= planned_end();
     return loads_on_bodies().resting_load_on(body, preview, is_whole ? std::numeric_limits<double>::infinity() : until);
 }
@@ -153,9 +154,9 @@ double DrivenMotion::change_by(std::size_t body, const Wrench& load, double dura
     return std::sqrt(2.0 * bodies_[body].quadratic_energy(whole) / bodies_[body].description().mass);
 }
 
-/// Returns the end of the substep, in s, limited to `end` and by particles that wait for bodies. After an impact, a
-/// particle that waits for a body moves with the body's surface and not in the direction of its own momentum. A couple
-/// on the body conserves the angular momentum. It turns the body in proportion to the time.
+/// Returns the end of the substep, in s, which is at most `end`. After an impact, a particle that waits for a body
+/// moves with the body's surface and not in the direction of its own momentum. A couple on the body then conserves the
+/// angular momentum. The rotation by the couple grows with the waiting time, so a strong couple shortens the substep.
 double DrivenMotion::end_of_waits(std::span<const ColliderLoad> preview, double end) const {
     const double begin = paths_.planned(0).begin;
     for (std::size_t i = 0; i < preview.size(); ++i) {

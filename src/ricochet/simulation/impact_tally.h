@@ -28,9 +28,9 @@ public:
         : body_(&body), path_(&path), colliders_(colliders), id_(id), about_(body.moment_center()) {}
 
     void add(const ColliderLoad& load);
-    /// Returns true if the energy would change by much if all impacts were applied together at a time, in s. The change
-    /// is compared with the energy that the impacts dissipate if each acts alone. doubt: fraction of the exchanged
-    /// energies that is added to the change.
+    /// Returns true if applying all impacts together at a time, in s, would change the energy considerably. The change
+    /// is compared with the energy that the impacts dissipate if each acts alone. doubt: safety margin that is added to
+    /// the change, as a fraction of the exchanged energies.
     [[nodiscard]] bool changes_energy(double time, double doubt = 0.0) const;
     /// Returns the velocity change, in m/s, that a wrench causes on the body at the time and position of a load. The
     /// moment of the wrench refers to the same point as the moment of wrench().

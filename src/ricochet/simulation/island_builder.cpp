@@ -212,7 +212,7 @@ bool IslandBuilder::may_have_met(const IslandMember& first, const IslandMember& 
 }
 
 /// Joins islands whose members out of bounds have met particles of other islands. Returns false if no islands are
-/// joined. Two islands of earlier rounds have been compared already.
+/// joined. Pairs of members from earlier rounds are skipped, because they have been compared already.
 bool IslandBuilder::join_those_met() {
     const OutOfBoundsMembers off = members_out_of_bounds();
     const auto number = [&](const IslandMember& member) {

@@ -72,7 +72,8 @@ private:
     std::uint64_t most_ = std::numeric_limits<std::uint64_t>::max();
 };
 
-/// Returns the bytes of particles joined by springs, and of these springs, from their construction on.
+/// Returns the bytes that particles joined by springs, and these springs, need. Includes the data from which they are
+/// built.
 [[nodiscard]] double bytes_of_springs(double particles, double springs, IntegratorKind integrator);
 
 }  // namespace ricochet

@@ -57,7 +57,7 @@ public:
     virtual void after_generation(const ParticleRange& /*generation*/, const TimeSpan& /*step*/) {}
     /// Adds the particles that the generation has spawned. Returns true if any rank has added particles.
     virtual bool spawn(const TimeSpan& /*step*/) { return false; }
-    /// Removes particles at the end of a step, at a time in s, or prepares their removal by other code.
+    /// Removes particles at the end of a step, or prepares their removal by other code. time: end of the step, in s.
     virtual void retire(double /*time*/) {}
     /// Checks the state at the end of a step.
     virtual void verify(const TimeSpan& /*step*/) {}

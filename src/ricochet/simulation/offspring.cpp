@@ -263,8 +263,8 @@ void Offspring::allot(std::vector<Claim>& claims, std::uint64_t living, std::uin
     }
 }
 
-/// Does the work of allot() if several ranks share the run. Each rank decides for all ranks. The spawn generations of
-/// one parent are on one rank.
+/// Does the work of allot() if several ranks share the run. Each rank has the claims of all ranks, and makes the same
+/// decisions. The spawn generations of one parent are on one rank.
 void Offspring::allot_together(std::vector<Claim>& mine, std::size_t here, OffspringCounts& counts) const {
     const auto rank = static_cast<std::uint32_t>(parts_.share.ranks().rank());
     for (std::size_t k = 0; k < mine.size(); ++k) mine[k].rank = rank, mine[k].spawn_generation = k;

@@ -111,7 +111,7 @@ private:
         double mass = 0.0;             ///< kg, mass of the parent
         bool share = false;
         std::uint32_t rank = 0;
-        std::uint64_t spawn_generation = 0;  ///< index on that rank
+        std::uint64_t spawn_generation = 0;  ///< index of the spawn generation on rank `rank`
         std::uint32_t allowed = 0;
         std::uint64_t first = 0;  ///< number of its first child among all children of the call
     };

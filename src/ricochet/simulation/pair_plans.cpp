@@ -13,8 +13,9 @@
 namespace ricochet {
 namespace {
 
-/// Largest number of spheres in a row that a sphere at rest is expected to deflect. Spheres behind them are found only
-/// after the move, which is then repeated. Local, because only the cost depends on it.
+/// Number of successive deflections that are expected. A bound sphere deflects a free sphere that hits it, and the
+/// deflected sphere can deflect the next one. Spheres deflected later are found only after the move, which is then
+/// repeated. Local, because only the cost depends on it.
 constexpr int kDeflections = 2;
 
 }  // namespace

@@ -20,8 +20,8 @@ namespace ricochet {
 /// The particles of a simulation. Particles are appended at the end and keep their order.
 class ParticleStore {
 public:
-    /// may_sleep: true if supports last, so that a held particle needs no further query. colliders: number of colliders
-    /// for which the response keeps sides; 0 without sides. keeps_attachments: true if colliders move.
+    /// may_sleep: true if supports do not change, so that a held particle needs no further query. colliders: number of
+    /// colliders for which the response keeps sides; 0 without sides. keeps_attachments: true if colliders move.
     ParticleStore(std::vector<AttributeDescription> attributes, bool keeps_origin, bool may_sleep,
                   std::size_t colliders, bool keeps_attachments = false);
 

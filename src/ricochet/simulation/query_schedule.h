@@ -69,8 +69,9 @@ enum class QueryState : std::uint8_t {
 
 /// Forecast by the look-ahead in a particle's last query. It applies if the particle is in flight.
 struct FreeFlightForecast {
-    double free_until = 0.0;            ///< s, the particle certainly hits nothing before; in the past: unknown
-    double candidates_until = 0.0;      ///< s, only the candidates come near the particle's path before
+    /// S, the particle certainly hits nothing before this time; not known if in the past.
+    double free_until = 0.0;
+    double candidates_until = 0.0;      ///< s, only the candidates come near the particle's path before this time
     ContactCandidates candidates = {};  ///< valid only if candidates_until is in the future
 };
 

@@ -2,8 +2,8 @@
 /// Private to the simulation: the cost of the particles on each rank, and transfers of particles between ranks.
 ///
 /// Work is counted and not measured, so that a repeated run with the same number of ranks has the same particles on
-/// each rank. Results do not depend on the rank of a particle. The id of a birth determines its rank, a child lives on
-/// the rank of its parent, and no other code uses the rank.
+/// each rank. Results do not depend on the rank of a particle. The position of a birth in the schedules of the emitters
+/// determines its rank. A child lives on the rank of its parent. No other code uses the rank.
 #pragma once
 
 #include <cstddef>

@@ -74,7 +74,8 @@ public:
     /// many.
     void end_step(std::size_t living_here, const ColliderList& colliders);
 
-    /// Returns, on all ranks, the message of the rank with the lowest id among the ranks with a message.
+    /// Returns the same message on all ranks. If several ranks have a message, the message of the rank with the lowest
+    /// `id` is used.
     [[nodiscard]] std::optional<std::string> first_message(const std::optional<std::string>& message,
                                                            std::uint64_t id) const;
 

@@ -229,8 +229,8 @@ public:
     RunCheck(const CollisionWorld& world, const MovingColliders& bodies);
 
     /// Adds entries for appended particles. particles: new number of all particles. Must not be called during checks. A
-    /// new particle is watched only from its first check on. Before this check, other impacts in the same step can
-    /// still change the path that a dynamic body has at the birth.
+    /// new particle is watched only from its first check on. Until then, other impacts in the same step can still
+    /// change the path of a dynamic body at the time of the birth.
     void add_spawned(std::size_t particles);
     /// Checks the motion of particle i up to the given times. `particles` still contains the state of particle i before
     /// the motion. Several threads may check different particles.

@@ -72,9 +72,9 @@ private:
 /// segments.
 ///
 /// Forces between members that cannot be split into pairs are corrected together. They are evaluated in the planned end
-/// state, and again with each departed member displaced by its mean deviation from plan. The difference is applied to
-/// all members. The correction conserves momentum as well as the forces do. It is exact to first order in the
-/// deviations, so its error is also of third order.
+/// state, and again with each departed member displaced in proportion to its mean deviation from plan. The difference
+/// is applied to all members. The correction conserves momentum if the forces conserve it. It is exact to first order
+/// in the deviations, so its error is also of third order.
 ///
 /// If contacts balanced a member's forces at the start of the step, its forces keep their start values. The reactions
 /// on other members keep their start values too. Otherwise the forces between two members that roll on each other would

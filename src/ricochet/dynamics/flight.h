@@ -111,8 +111,8 @@ public:
         return {flush_tiny(position + duration_ * (velocity + drift_kick_)), velocity + kick_};
     }
 
-    /// Returns true if the velocity does not change. Only negative zeros in the velocity can become positive in the
-    /// first step.
+    /// Returns true if the step does not change the velocity. Components that are negative zeros can still become
+    /// positive zeros.
     [[nodiscard]] bool is_straight() const { return kick_ == Vec3{} && drift_kick_ == Vec3{}; }
     [[nodiscard]] double duration() const { return duration_; }
 

@@ -116,7 +116,7 @@ public:
     [[nodiscard]] const std::optional<Vec3>& common_acceleration() const { return common_; }
     /// Returns true if no force depends on time.
     [[nodiscard]] bool is_steady() const { return steady_; }
-    /// Returns true if all work on this particle is converted potential energy. A coupled particle returns false.
+    /// Returns true if all work on this particle is converted potential energy. Returns false for a coupled particle.
     [[nodiscard]] bool is_conservative_for(const ForceInput& input) const {
         return conservative_ && input.coupling == nullptr;
     }

@@ -82,8 +82,9 @@ struct SystemStep {
 /// the same step. It stops halving if the next step would be shorter than `shortest` seconds (0: kShortestSubstep of
 /// the duration).
 ///
-/// The methods are the same as in begin_flight(), with the same bits if members do not act on each other. The exception
-/// is ballistic, which is replaced by velocity_verlet. Spring forces that are constant over a step would add energy.
+/// The methods are the same as in begin_flight(). If members do not act on each other, begin_flight() gives bitwise the
+/// same results. The exception is ballistic, which is replaced by velocity_verlet, because spring forces that are
+/// constant over a step would add energy.
 ///
 /// implicit_euler solves v1 = v0 + h a(x0 + h v1, v1, t + h) for all members together by Newton's method with sparse
 /// factorizations. The force of a damper is proportional to (l1 - l0) / h, the mean rate of change of its length over

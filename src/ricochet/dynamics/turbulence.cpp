@@ -15,7 +15,7 @@ namespace ricochet {
 namespace {
 
 constexpr std::uint32_t kTable = 256;  // number of entries, and period of the lattice in points
-// Stream keys of random numbers. They differ from the keys of emitters, which start at 0.
+// Stream keys of random numbers. They differ from the keys of emitters, whose high byte is smaller.
 constexpr std::uint32_t kGradientStream = 0xF1040001U;
 constexpr std::uint32_t kOrderStream = 0xF1040002U;
 constexpr std::uint32_t kOffsetStream = 0xF1040003U;

@@ -110,9 +110,8 @@ TriangleTotals Simulation::triangle_totals(std::size_t i) const {
     TriangleTotals result;
     const SurfaceTotals& totals = impl().recorder.totals();
     if (totals.empty()) return result;
-    // The weights of sleeping particles are added to the totals only during this call. They are removed exactly at the
-    // end.
-    impl().mover.add_weights(time(), 1.0);
+    // Adds the weights of sleeping particles to the totals for the time of this call. They are removed exactly.
+    impl().mover.sleepers().add_weights(time(), 1.0);
     const ColliderList& list = impl().scene.list();
     for (SurfaceId surface = list.first_surface_of(i); surface < list.first_surface_of(i + 1); ++surface) {
         // All surfaces of one shape share one entry.
@@ -124,7 +123,7 @@ TriangleTotals Simulation::triangle_totals(std::size_t i) const {
         result.impulse[at] += totals.impulse(surface);
         result.lasting_impulse[at] += totals.lasting_impulse(surface);
     }
-    impl().mover.add_weights(time(), -1.0);
+    impl().mover.sleepers().add_weights(time(), -1.0);
     return result;
 }
 

@@ -10,7 +10,6 @@
 #include "ricochet/response/rollback.h"
 #include "ricochet/simulation/cloud_motion.h"
 #include "ricochet/simulation/heat_stage.h"
-#include "ricochet/simulation/sleeping_islands.h"
 
 namespace ricochet {
 
@@ -54,6 +53,72 @@ void prefetch_vertices(const ContactCandidates& candidates, const CollisionWorld
     }
 }
 
+// Prefetches in three stages, because neighbours in space are scattered in memory: the data that load() and store()
+// use, then the candidates, then their corners.
+void prefetch_ahead(const ActiveMover& mover, const QuerySchedule& schedule, std::span<const std::uint32_t> active,
+                    std::size_t k) {
+    if (k + kPrefetchDistance < active.size()) mover.prefetch(active[k + kPrefetchDistance]);
+    const CollisionWorld& world = mover.response().rules().world;
+    if (k + kTrianglePrefetchDistance < active.size()) {
+        prefetch_triangles(schedule.candidates(active[k + kTrianglePrefetchDistance]), world);
+    }
+    if (k + kVertexPrefetchDistance < active.size()) {
+        prefetch_vertices(schedule.candidates(active[k + kVertexPrefetchDistance]), world);
+    }
+}
+
+/// Lets the core of a sphere in overlap grow with its distance to the surfaces, at the time of its stored position. In
+/// contact the core keeps its radius.
+void grow_core(ParticleStore& store, const MovingColliders& bodies, std::size_t i, double time) {
+    if (!store.cores().has(i) || store.is_fixed(i)) return;
+    const Particles& particles = store.particles();
+    if (particles.support[i][0] != kNoSupport) return;
+    const Vec3& position = particles.position[i];
+    const double radius = particles.radius[i];
+    const std::optional<Overlap> overlap = deepest_overlap(bodies, position, radius, store.stored_time(i, time));
+    if (overlap) {
+        const double core = core_radius(*overlap, position, radius);
+        store.cores().set(i, std::max(store.cores().radius(i), core), store.size());
+    } else {
+        store.cores().release(i);
+    }
+}
+
+/// Decides when a particle that has been moved until a time, in s, needs its next query.
+void schedule_query(const MoverParts& parts, std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
+                    double until, bool is_pulled) {
+    if (parts.store.is_fixed(i) || parts.store.is_asleep(i)) {
+        parts.schedule.leave_alone(i);
+    } else if (!flies_on(moved, outcome) || parts.observers.coupled->is_active() || is_pulled ||
+               parts.store.cores().has(i)) {
+        parts.schedule.forget(i);
+    } else {
+        FreeFlightForecast forecast;
+        if (outcome.free_for > 0.0) {
+            const Particles& particles = parts.store.particles();
+            forecast.free_until = std::min(until + outcome.free_for, particles.birth_time[i] + particles.lifetime[i]);
+        }
+        if (outcome.candidates_for != 0.0) {
+            forecast.candidates_until = until + outcome.candidates_for;
+            forecast.candidates = outcome.candidates;
+        }
+        parts.schedule.set_flying(i, forecast);
+    }
+}
+
+/// Records the passages of particle i past counters, from a stored position in m to its present one.
+void note_passages(const MoverParts& parts, std::size_t i, const Vec3& from, std::span<const FlownPiece> flown,
+                   std::span<const Segment> segments, BlockRecord& record) {
+    if (parts.observers.passages == nullptr) return;
+    const Particles& particles = parts.store.particles();
+    const MovedParticle moved{particles.id[i], particles.mass[i], from, particles.position[i]};
+    if (parts.observers.passages->needs_segments()) {
+        parts.observers.passages->trace(moved, segments, record.passages);
+    } else {
+        parts.observers.passages->trace(moved, flown, record.passages);
+    }
+}
+
 }  // namespace
 
 void ActiveMover::move(const ActiveSet& active, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
@@ -64,7 +129,7 @@ void ActiveMover::move(const ActiveSet& active, const TimeSpan& step, std::vecto
         prepare(scratch);
         const std::span<const std::uint32_t> particles = active.block(block);
         for (std::size_t k = 0; k < particles.size(); ++k) {
-            prefetch(particles, k);
+            prefetch_ahead(*this, parts_.schedule, particles, k);
             if (clouds != nullptr && clouds->leads(particles[k])) continue;
             move_one(particles[k], step, scratch, blocks[block]);
         }
@@ -72,12 +137,23 @@ void ActiveMover::move(const ActiveSet& active, const TimeSpan& step, std::vecto
     });
 }
 
+void ActiveMover::prepare(MoveScratch& scratch) const {
+    scratch.hits.clear();
+    scratch.records.clear();
+    scratch.loads.clear();
+    scratch.record_loads = parts_.recorder.collects_loads();
+    scratch.record_contacts = parts_.recorder.collects_contacts();
+    const bool traces_segments = parts_.observers.passages != nullptr && parts_.observers.passages->needs_segments();
+    scratch.record_segments = parts_.observers.check != nullptr || traces_segments;
+    scratch.record_motions = parts_.observers.check != nullptr || parts_.observers.meter != nullptr;
+}
+
 void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record,
                            const Lead* lead) {
     const TimeSpan life = life_in(parts_.store.particles(), i, step);
     if (life.end <= life.begin) return;
     response_.rules().poll();
-    grow_core(i, life.begin);
+    grow_core(parts_.store, response_.rules().bodies, i, life.begin);
     MovingParticle particle = load(i, life.begin);
     if (lead != nullptr) particle.planned = &lead->flight, particle.state.coupling = &lead->pull;
     particle.step_end = life.end;
@@ -95,7 +171,7 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     const RecordedMotion before{particle.state.position, particle.state.velocity, particle.spin};
     const bool wants_deviation = as_planned && coupled().wants_deviation_of(i);
     scratch.record_flown = wants_deviation || parts_.observers.passages != nullptr;
-    const MoveOutcome outcome = response_.move(particle, duration, scratch);
+    const MoveOutcome outcome = response_.move(particle, duration, scratch);  // `exact`: ParticleMover::run()
     if (wants_deviation)
         record_deviation(i, particle, outcome, scratch.flown, impulse_of(std::span(scratch.hits).subspan(first_hit)));
     if (parts_.observers.meter != nullptr) {
@@ -114,19 +190,33 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     const MoveImpulses impulses{std::span(scratch.hits).subspan(first_hit), {}, {}};
     const Vec3 from = parts_.store.particles().position[i];
     write_back(i, particle, outcome, life.end, impulses, record, lead != nullptr);
-    note_passages(i, from, scratch.flown, scratch.segments, record);
+    note_passages(parts_, i, from, scratch.flown, scratch.segments, record);
 }
 
-void ActiveMover::note_passages(std::size_t i, const Vec3& from, std::span<const FlownPiece> flown,
-                                std::span<const Segment> segments, BlockRecord& record) const {
-    if (parts_.observers.passages == nullptr) return;
-    const Particles& particles = parts_.store.particles();
-    const MovedParticle moved{particles.id[i], particles.mass[i], from, particles.position[i]};
-    if (parts_.observers.passages->needs_segments()) {
-        parts_.observers.passages->trace(moved, segments, record.passages);
-    } else {
-        parts_.observers.passages->trace(moved, flown, record.passages);
+MovingParticle ActiveMover::load(std::size_t i, double start) {
+    MovingParticle particle = parts_.store.load(i, start, !parts_.schedule.is_without_contact(i));
+    particle.candidates = parts_.schedule.candidates(i);
+    if (i < bounces_.size()) particle.bounces_before = bounces_[i];
+    if (parts_.observers.offspring != nullptr) {
+        particle.shatter_impulse = parts_.observers.offspring->shatter_impulse(parts_.store.particles(), i);
     }
+    particle.planned = coupled().is_planned_in_contact(i) ? nullptr : coupled().flight_of(i);
+    particle.state.coupling = coupled().coupling_of(i);
+    return particle;
+}
+
+void ActiveMover::write_back(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
+                             const MoveImpulses& impulses, BlockRecord& record, bool is_pulled) {
+    Particles& particles = parts_.store.particles();
+    const auto is_fast = [&] { return length_squared(particles.velocity[i]) > kMaxSpeed * kMaxSpeed; };
+    const bool was_fast = is_fast();
+    const bool in_contact = !parts_.schedule.is_without_contact(i) || !flies_on(moved, outcome);
+    parts_.store.store(i, moved, outcome, in_contact, !coupled().holds(i) && !is_pulled);
+    if (!was_fast && is_fast()) record.note({i, length(particles.velocity[i]), runaway_cause(i, impulses)});
+    if (outcome.end == MoveEnd::held) particles.accounted_until[i] = until;
+    if (outcome.unsimulated_time > 0.0) record.cut_off.push_back({i, outcome.unsimulated_time});
+    schedule_query(parts_, i, moved, outcome, until, is_pulled);
+    record.add(outcome);
 }
 
 void ActiveMover::apply_velocity_change(std::size_t i, const Vec3& change, double time, double duration,
@@ -138,30 +228,10 @@ void ActiveMover::apply_velocity_change(std::size_t i, const Vec3& change, doubl
     parts_.store.particles().spin[i] = parts_.store.spin_of(i, particle);
 }
 
-/// Updates the core of an overlapping sphere, at the time of the stored position. The core grows with the distance of
-/// the surfaces from the centre, and never shrinks. In contact, the core keeps its radius. Without an overlap, the core
-/// is removed.
-void ActiveMover::grow_core(std::size_t i, double time) {
-    ParticleStore& store = parts_.store;
-    if (!store.cores().has(i) || store.is_fixed(i)) return;
-    const Particles& particles = store.particles();
-    if (particles.support[i][0] != kNoSupport) return;
-    const Vec3& position = particles.position[i];
-    const double radius = particles.radius[i];
-    const std::optional<Overlap> overlap =
-        deepest_overlap(response_.rules().bodies, position, radius, store.stored_time(i, time));
-    if (overlap) {
-        const double core = core_radius(*overlap, position, radius);
-        store.cores().set(i, std::max(store.cores().radius(i), core), store.size());
-    } else {
-        store.cores().release(i);
-    }
-}
-
 bool ActiveMover::set_out(std::size_t i, const TimeSpan& step, IslandMember& member) {
     const TimeSpan life = life_in(parts_.store.particles(), i, step);
     if (life.end <= life.begin) return false;
-    grow_core(i, life.begin);
+    grow_core(parts_.store, response_.rules().bodies, i, life.begin);
     member.particle = i;
     member.moving = load(i, life.begin);
     if (life.begin != step.begin || life.end != step.end) member.moving.planned = nullptr;
@@ -196,11 +266,11 @@ void ActiveMover::write_back(IslandMember& member, const TimeSpan& step, BlockRe
         parts_.schedule.leave_alone(i);
         return;
     }
-    // A sphere that has slept on surfaces alone has pressed on them until now, so its weight is added.
-    if (parts_.store.is_asleep(i)) record.counts.lost_impulses += add_weight(i, life.begin, 1.0);
+    // A sphere that slept on walls alone has pressed on them until now.
+    if (parts_.store.is_asleep(i)) record.counts.lost_impulses += sleepers_.add_weight(i, life.begin, 1.0);
     const Vec3 from = parts_.store.particles().position[i];
     write_back(i, moving, member.outcome, life.end, {member.lists.hits, {}, member.pair_velocity_change}, record);
-    note_passages(i, from, member.trajectory, member.lists.segments, record);
+    note_passages(parts_, i, from, member.trajectory, member.lists.segments, record);
 }
 
 void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
@@ -208,7 +278,7 @@ void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& ste
     for (std::size_t k = 0; k < system.size(); ++k) {
         const std::size_t i = range.begin + k;
         const TimeSpan life = life_in(parts_.store.particles(), i, step);
-        grow_core(i, life.begin);
+        grow_core(parts_.store, response_.rules().bodies, i, life.begin);
         system[k].particle = load(i, life.begin);
         system[k].start = life.begin;
         system[k].stop = life.end;
@@ -234,7 +304,7 @@ void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& ste
         }
         const Vec3 from = parts_.store.particles().position[i];
         write_back(i, moved.particle, moved.outcome, moved.stop, {{}, moved.surface_impulse, {}}, record);
-        note_passages(i, from, {}, moved.segments, record);
+        note_passages(parts_, i, from, {}, moved.segments, record);
     }
     for (std::size_t k = 0; k < blocks.size(); ++k) record_lists(scratch[k], blocks[k]);
 }
@@ -259,118 +329,6 @@ std::vector<ColliderLoad> ActiveMover::preview(const ParticleRange& range, const
     std::vector<ColliderLoad> all;
     for (const auto& loads : blocks) all.insert(all.end(), loads.begin(), loads.end());
     return all;
-}
-
-MovingParticle ActiveMover::load(std::size_t i, double start) {
-    MovingParticle particle = parts_.store.load(i, start, !parts_.schedule.is_without_contact(i));
-    particle.candidates = parts_.schedule.candidates(i);
-    if (i < bounces_.size()) particle.bounces_before = bounces_[i];
-    if (parts_.observers.offspring != nullptr) {
-        particle.shatter_impulse = parts_.observers.offspring->shatter_impulse(parts_.store.particles(), i);
-    }
-    particle.planned = coupled().is_planned_in_contact(i) ? nullptr : coupled().flight_of(i);
-    particle.state.coupling = coupled().coupling_of(i);
-    return particle;
-}
-
-void ActiveMover::write_back(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
-                             const MoveImpulses& impulses, BlockRecord& record, bool is_pulled) {
-    Particles& particles = parts_.store.particles();
-    const auto is_fast = [&] { return length_squared(particles.velocity[i]) > kMaxSpeed * kMaxSpeed; };
-    const bool was_fast = is_fast();
-    const bool in_contact = !parts_.schedule.is_without_contact(i) || !flies_on(moved, outcome);
-    parts_.store.store(i, moved, outcome, in_contact, !coupled().holds(i) && !is_pulled);
-    if (!was_fast && is_fast()) record.note({i, length(particles.velocity[i]), runaway_cause(i, impulses)});
-    if (outcome.end == MoveEnd::held) particles.accounted_until[i] = until;
-    if (outcome.unsimulated_time > 0.0) record.cut_off.push_back({i, outcome.unsimulated_time});
-    schedule_query(i, moved, outcome, until, is_pulled);
-    record.add(outcome);
-}
-
-void ActiveMover::schedule_query(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
-                                 bool is_pulled) {
-    if (parts_.store.is_fixed(i) || parts_.store.is_asleep(i)) {
-        parts_.schedule.leave_alone(i);
-    } else if (!flies_on(moved, outcome) || coupled().is_active() || is_pulled || parts_.store.cores().has(i)) {
-        parts_.schedule.forget(i);
-    } else {
-        FreeFlightForecast forecast;
-        if (outcome.free_for > 0.0) {
-            const Particles& particles = parts_.store.particles();
-            forecast.free_until = std::min(until + outcome.free_for, particles.birth_time[i] + particles.lifetime[i]);
-        }
-        if (outcome.candidates_for != 0.0) {
-            forecast.candidates_until = until + outcome.candidates_for;
-            forecast.candidates = outcome.candidates;
-        }
-        parts_.schedule.set_flying(i, forecast);
-    }
-}
-
-std::uint64_t ActiveMover::add_weight(std::size_t i, double until, double sign) {
-    SurfaceTotals& totals = parts_.recorder.totals();
-    const double elapsed = until - parts_.store.particles().accounted_until[i];
-    if (totals.empty() || !(elapsed > 0.0)) return 0;
-    std::vector<SurfaceHit> hits;
-    const std::uint64_t id = parts_.store.particles().id[i];
-    const SleepingIslands* const sleeping_islands = parts_.observers.sleeping_islands;
-    if (sleeping_islands != nullptr && sleeping_islands->has(id)) {
-        sleeping_islands->add_weight(id, elapsed, hits);
-    } else if (parts_.store.is_asleep(i)) {
-        MovingParticle sleeper = parts_.store.load(i, until, true);
-        sleeper.state.coupling = coupled().coupling_of(i);
-        response_.add_weight(sleeper, elapsed, hits);
-    }
-    for (SurfaceHit& hit : hits) hit.impulse *= sign;
-    return totals.add(hits);
-}
-
-void ActiveMover::add_weights(double until, double sign) {
-    for (std::size_t i = 0; i < parts_.store.size(); ++i) (void)add_weight(i, until, sign);
-}
-
-void ActiveMover::press(std::span<const SurfaceHit> hits) {
-    SurfaceTotals& totals = parts_.recorder.totals();
-    if (!totals.empty()) parts_.recorder.statistics().lost_impulses += totals.add(hits);
-}
-
-void ActiveMover::wake(std::size_t i, double time) {
-    parts_.recorder.statistics().lost_impulses += add_weight(i, time, 1.0);
-    parts_.store.wake(i);
-    parts_.schedule.forget(i);
-}
-
-void ActiveMover::check_sleeper(std::size_t i, const TimeSpan& step, BlockRecord& record) const {
-    if (parts_.observers.check == nullptr) return;
-    const Particles& particles = parts_.store.particles();
-    const Vec3& position = particles.position[i];
-    const Segment staying{position, position, step.end, step.begin, step.end};
-    parts_.observers.check->check(i, particles, parts_.store.force_input(i, step.end), {step.end, step.end},
-                                  {&staying, 1}, record.violations);
-}
-
-void ActiveMover::prepare(MoveScratch& scratch) const {
-    scratch.hits.clear();
-    scratch.records.clear();
-    scratch.loads.clear();
-    scratch.record_loads = parts_.recorder.collects_loads();
-    scratch.record_contacts = parts_.recorder.collects_contacts();
-    const bool traces_segments = parts_.observers.passages != nullptr && parts_.observers.passages->needs_segments();
-    scratch.record_segments = parts_.observers.check != nullptr || traces_segments;
-    scratch.record_motions = parts_.observers.check != nullptr || parts_.observers.meter != nullptr;
-}
-
-// Prefetches in three stages, because neighbours in space are scattered in memory. The stages fetch the data for load()
-// and store(), the candidate triangles, and the corners of these triangles.
-void ActiveMover::prefetch(std::span<const std::uint32_t> active, std::size_t k) const {
-    if (k + kPrefetchDistance < active.size()) prefetch(active[k + kPrefetchDistance]);
-    const CollisionWorld& world = response_.rules().world;
-    if (k + kTrianglePrefetchDistance < active.size()) {
-        prefetch_triangles(parts_.schedule.candidates(active[k + kTrianglePrefetchDistance]), world);
-    }
-    if (k + kVertexPrefetchDistance < active.size()) {
-        prefetch_vertices(parts_.schedule.candidates(active[k + kVertexPrefetchDistance]), world);
-    }
 }
 
 }  // namespace ricochet

@@ -17,6 +17,7 @@
 #include "ricochet/simulation/particle_store.h"
 #include "ricochet/simulation/query_schedule.h"
 #include "ricochet/simulation/run_recorder.h"
+#include "ricochet/simulation/sleeping_particles.h"
 
 namespace ricochet {
 
@@ -112,7 +113,10 @@ struct MoverParts {
 /// their blocks.
 class ActiveMover {
 public:
-    ActiveMover(const MoverParts& parts, const Response& response) : parts_(parts), response_(response) {}
+    ActiveMover(const MoverParts& parts, const Response& response)
+        : parts_(parts),
+          response_(response),
+          sleepers_(parts.store, parts.schedule, parts.recorder, parts.observers, response) {}
 
     [[nodiscard]] const Response& response() const { return response_; }
     /// Returns a mover that moves the same particles by another response. The response must outlive the mover.
@@ -173,29 +177,14 @@ public:
     /// Returns the loads of the particles of the range on dynamic bodies, as if the step were made. Changes nothing.
     [[nodiscard]] std::vector<ColliderLoad> preview(const ParticleRange& range, const TimeSpan& step);
 
-    /// Adds to the totals of surfaces the impulse of a sleeping particle's weight from its last move until a time, in
-    /// s. A sign of -1 subtracts exactly the impulse that +1 adds. Returns the number of impulses that were too large
-    /// for the totals. Several threads may call this function for different particles.
-    std::uint64_t add_weight(std::size_t i, double until, double sign);
-    /// Calls add_weight() for all particles.
-    void add_weights(double until, double sign);
-    /// Adds impulses to the totals of surfaces.
-    void press(std::span<const SurfaceHit> hits);
-    /// Wakes a sphere that has slept on other spheres, at a time, in s. Must be called before the sleeping islands
-    /// remove the sphere.
-    void wake(std::size_t i, double time);
-    /// Tells the verifier, if there is one, that a particle has kept its position in a step.
-    void check_sleeper(std::size_t i, const TimeSpan& step, BlockRecord& record) const;
+    /// Returns the particles that sleep, and are therefore not moved.
+    [[nodiscard]] SleepingParticles& sleepers() { return sleepers_; }
 
 private:
     [[nodiscard]] CoupledMotion& coupled() const { return *parts_.observers.coupled; }
     void record_deviation(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
                           std::vector<FlownPiece>& flown, const Vec3& impulse);
     void record_deviation(IslandMember& member);
-    /// Records the passages of particle i at counters between the position `from`, in m, and its present position.
-    void note_passages(std::size_t i, const Vec3& from, std::span<const FlownPiece> flown,
-                       std::span<const Segment> segments, BlockRecord& record) const;
-    void grow_core(std::size_t i, double time);
     [[nodiscard]] MovingParticle load(std::size_t i, double start);
     /// Impulses of surfaces and other spheres on a particle in a move.
     struct MoveImpulses {
@@ -207,13 +196,11 @@ private:
     void write_back(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
                     const MoveImpulses& impulses, BlockRecord& record, bool is_pulled = false);
     [[nodiscard]] RunawayCause runaway_cause(std::size_t i, const MoveImpulses& impulses) const;
-    void schedule_query(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
-                        bool is_pulled);
-    void prefetch(std::span<const std::uint32_t> active, std::size_t k) const;
 
     MoverParts parts_;
-    const Response& response_;            // from make_response(); without a flow, `exact` calls ParticleMover::run()
-    std::vector<std::uint32_t> bounces_;  // per particle, since begin_step(); newer particles have no entry
+    const Response& response_;  // by make_response(); `exact` without a flow moves by ParticleMover::run()
+    SleepingParticles sleepers_;
+    std::vector<std::uint32_t> bounces_;  // of each particle since begin_step(); newer particles have no entry
 };
 
 }  // namespace ricochet

@@ -81,7 +81,7 @@ void LastingContacts::wake_alone(const std::vector<std::uint64_t>& woken, double
     for (const std::uint64_t particle : woken) {
         const std::optional<std::size_t> i = parts_.store.index_of(particle);
         if (!i) continue;
-        parts_.mover.wake(*i, time);
+        parts_.mover.sleepers().wake(*i, time);
         if (*i >= first_ && *i - first_ < traces_.is_asleep.size()) traces_.is_asleep[*i - first_] = 0;
     }
     std::vector<WarmStartMemory::Entry> contacts = sleeping_islands_.wake(woken);
@@ -309,7 +309,7 @@ void LastingContacts::check_sleepers(const TimeSpan& step, std::vector<BlockReco
     if (sleeping_islands_.empty() || are_children_ || rules().bodies.empty()) return;
     BlockRecord& record = blocks.emplace_back();
     for (std::size_t k = 0; k < traces_.is_asleep.size(); ++k) {
-        if (is_asleep(static_cast<std::uint32_t>(k))) parts_.mover.check_sleeper(k, step, record);
+        if (is_asleep(static_cast<std::uint32_t>(k))) parts_.mover.sleepers().check(k, step, record);
     }
 }
 

@@ -27,7 +27,7 @@ public:
         for (std::size_t i = 0; store.may_sleep() && i < store.size(); ++i) {
             const bool sleeps = store.is_asleep(i) && !store.is_fixed(i);
             if (!sleeps || !parts_.population.schedule().is_left_alone(i) || !is_near_moving(i)) continue;
-            parts_.recorder.statistics().lost_impulses += parts_.mover.add_weight(i, substep.begin, 1.0);
+            parts_.recorder.statistics().lost_impulses += parts_.mover.sleepers().add_weight(i, substep.begin, 1.0);
             parts_.population.wake(i);
         }
     }

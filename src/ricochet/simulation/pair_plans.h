@@ -1,6 +1,5 @@
 /// \file
-/// Private to the simulation: the paths that spheres take in a step if they meet no other spheres, and the pairs of
-/// spheres that may meet.
+/// Private to the simulation: the pairs of spheres that may meet in a step, by the motion of each alone.
 ///
 /// Each sphere declares bounds, in which it stays if it meets no other sphere. A free sphere flies without touching a
 /// wall, and declares its exact path. A bound sphere touches walls, or pressed on a wall or a sphere in the last step.
@@ -15,21 +14,15 @@
 
 #include "ricochet/dynamics/neighbour_pairs.h"
 #include "ricochet/response/event_island.h"
+#include "ricochet/simulation/lone_motion.h"
 #include "ricochet/simulation/pair_parts.h"
+#include "ricochet/simulation/sleeper_grid.h"
 
 namespace ricochet {
 
-/// State from earlier steps, for each particle of a range.
-struct PairTraces {
-    std::vector<std::uint8_t> is_asleep;  ///< 1 if the particle is in a sleeping island; other spheres then see only
-                                          ///< its position
-    std::vector<std::uint8_t> presses;    ///< 1 if it pressed on spheres or walls in a contact island of the last step
-    std::uint64_t version = 0;            ///< version of the sleeping islands; changes when they change
-};
-
 class PairPlans {
 public:
-    explicit PairPlans(const PairParts& parts) : parts_(parts) {}
+    explicit PairPlans(const PairParts& parts) : parts_(parts), alone_(parts) {}
 
     /// Computes the declarations of the particles of a range for a step, and finds the pairs that may meet. traces must
     /// live as long as the plans are used. The other functions identify a particle by its number in the range.
@@ -40,10 +33,10 @@ public:
     [[nodiscard]] const std::vector<NeighbourPair>& pairs() const { return pairs_; }
     /// Returns true if the spheres of a pair, given by its number, may meet.
     [[nodiscard]] bool may_meet(std::size_t pair) const { return met_[pair] != 0; }
-    /// Returns true if a sphere is bound and may leave its declared box.
-    [[nodiscard]] bool may_roam(std::uint32_t k) const { return is_bound(k) && is_unbounded(k); }
+    /// Returns true if a sphere is bound, and may go farther than it declares.
+    [[nodiscard]] bool may_roam(std::uint32_t k) const { return is_bound(k) && alone_.may_leave(boxes_[k]); }
     /// Returns true if a sphere takes part in the step, can be moved, and does not fly freely.
-    [[nodiscard]] bool is_bound(std::uint32_t k) const { return !boxes_[k].empty() && moves(k) && !is_free(k); }
+    [[nodiscard]] bool is_bound(std::uint32_t k) const { return !boxes_[k].empty() && alone_.moves(k) && !is_free(k); }
 
     /// Appends all spheres whose boxes are near a box.
     void find_near(const Box3& box, std::vector<std::uint32_t>& found) const;
@@ -64,19 +57,9 @@ public:
 private:
     enum class Freedom : std::uint8_t { unknown, free, bound };
 
-    [[nodiscard]] bool is_asleep(std::uint32_t k) const { return traces_->is_asleep[k] != 0; }
-    [[nodiscard]] bool lies(std::size_t i) const;
-    [[nodiscard]] bool moves(std::uint32_t k) const;
-    [[nodiscard]] bool is_bounded() const;
-    [[nodiscard]] bool is_unbounded(std::uint32_t k) const;
-    [[nodiscard]] double reach(std::size_t i, double duration) const;
-    [[nodiscard]] Box3 reachable_box(std::uint32_t k) const;
-    [[nodiscard]] Box3 box_of_free(std::uint32_t k) const;
-    [[nodiscard]] FlownPiece free_path(std::uint32_t k) const;
-    [[nodiscard]] bool is_known_free(std::uint32_t k) const;
-    [[nodiscard]] bool lives_through(std::size_t i) const;
-    [[nodiscard]] bool flies_freely(std::uint32_t k, MoveScratch& scratch) const;
-    [[nodiscard]] const Box3& place_of(std::uint32_t k) const { return is_asleep(k) ? sleeper_boxes_[k] : boxes_[k]; }
+    [[nodiscard]] const Box3& place_of(std::uint32_t k) const {
+        return alone_.is_asleep(k) ? sleepers_.box(k) : boxes_[k];
+    }
     void declare();
     void collect_pairs();
     [[nodiscard]] bool expect_deflections();
@@ -85,21 +68,14 @@ private:
     [[nodiscard]] bool do_meet(const NeighbourPair& pair) const;
 
     PairParts parts_;
-    std::size_t first_ = 0;  // first particle of the range
-    TimeSpan step_;
-    bool is_bounded_ = true;  // true if reach() is a bound, except near moving colliders
-    const PairTraces* traces_ = nullptr;
+    LoneMotion alone_;
     std::vector<Freedom> freedom_;
     std::vector<Box3> boxes_;
     NeighbourPairs near_;                 // pairs of boxes; spheres that ask() has not tested count as bound
     std::vector<std::uint32_t> changed_;  // boxes that have changed since the last search in near_
     std::vector<NeighbourPair> pairs_;
-    std::vector<std::uint8_t> met_;  // per pair: 1 if its spheres may meet
-    NeighbourGrid sleeper_grid_;
-    std::vector<Box3> sleeper_boxes_;
-    Box3 sleepers_;                      // box around all sleepers
-    std::vector<std::uint8_t> in_grid_;  // sleepers in the grid
-    std::uint64_t grid_version_ = 0;     // version of the sleeping islands in the grid
+    std::vector<std::uint8_t> met_;  // of the pairs
+    SleeperGrid sleepers_;
 };
 
 }  // namespace ricochet

@@ -95,7 +95,7 @@ void Retirement::remove_leavers(double time) {
             if (departure == RemovalReason::none) continue;
             keep[i] = 0;
             const double death = particles.birth_time[i] + particles.lifetime[i];
-            blocks[block].add(departure, mover_.add_weight(i, std::min(time, death), 1.0));
+            blocks[block].add(departure, mover_.sleepers().add_weight(i, std::min(time, death), 1.0));
         }
     });
     for (const LeaverCounts& counts : blocks) counts.add_to(recorder_.statistics());

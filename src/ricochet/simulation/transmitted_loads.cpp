@@ -80,7 +80,7 @@ void TransmittedLoads::share_out(const SleepingIslands& sleeping_islands, const 
         hits.push_back(
             {weight.surface, share_of(weight, total->second, holding[sleeping_island]) * total->second, false});
     }
-    parts_.mover.press(hits);
+    parts_.mover.sleepers().press(hits);
 }
 
 /// Computes the balance of each island. The stored forces are not in balance if spheres fell asleep at different times

@@ -69,8 +69,9 @@ TEST(IncludeGraph, FindsAPlantedViolation) {
         {"src/ricochet/verify/x.cpp", "ricochet/geometry/acceleration/triangle_bvh.h"},  // the tree of the sweep
         {"src/ricochet/verify/x.cpp", "ricochet/core/double_double.h"},                  // the numbers of the sweep
         {"src/ricochet/verify/x.cpp", "ricochet/response/exact.h"},                      // upward
-        {"src/ricochet/response/exact.cpp", "ricochet/verify/verifier.h"},        // the sweep must not use its verifier
-        {"src/ricochet/response/exact.cpp", "boost/multiprecision/cpp_int.hpp"},  // outside the door
+        {"src/ricochet/response/particle_mover.cpp",
+         "ricochet/verify/verifier.h"},  // the sweep must not use its verifier
+        {"src/ricochet/response/particle_mover.cpp", "boost/multiprecision/cpp_int.hpp"},  // outside the door
         {"src/ricochet/geometry/predicates/predicates.cpp", "boost/multiprecision/cpp_int.hpp"},
         {"src/ricochet/simulation.cpp", "view/export/run_export.h"},             // the engine knows no product
         {"src/ricochet/io/x.cpp", "run/run_folder.h"},                           // nor this one

@@ -1,6 +1,6 @@
 /// \file
 /// The exact response: computes the time of impact on the particle's own path, and reflects within the step, as often
-/// as needed.
+/// as needed. Its functions are in particle_mover.cpp.
 ///
 /// Source: continuous collision detection against static surfaces with exact predicates, see ARCHITECTURE.md.
 ///

@@ -28,44 +28,6 @@ bool can_be_followed(const Path& path) {
     return reach <= kLargestCoordinate && max_abs(path.c[1]) <= kLargestCoordinate && is_finite(path.end);
 }
 
-bool ImpactResolver::reflect(std::span<const ContactSurface> surfaces, bool is_fast) {
-    const auto is_met = [&](const ContactSurface& surface) { return surfaces_.is_approached(surface); };
-    if (std::none_of(surfaces.begin(), surfaces.end(), is_met)) return false;
-    settle_on_supports(surfaces);
-    const Vec3 before = particle_.state.velocity;
-    if (scratch_.record_loads) ledger_.begin_impact(is_fast ? surfaces_.approach(surfaces) : 0.0);
-    resolve(surfaces, Rebound::by_material);
-    ledger_.end_impact();
-    scratch_.supported_by.clear();  // the next impact ends no contact interval
-    shatter_by(particle_.state.velocity - before);
-    return true;
-}
-
-/// Removes approach speeds towards supporting surfaces, which are rounding errors. This impulse belongs to no impact.
-void ImpactResolver::settle_on_supports(std::span<const ContactSurface> surfaces) {
-    std::array<Vec3, Contact::kMostSurfaces> normals;
-    std::array<double, Contact::kMostSurfaces> missing{};
-    std::size_t count = 0;
-    const ContactSurface* support = nullptr;
-    for (const ContactSurface& surface : surfaces) {
-        const double approach = -surfaces_.separation_speed(surface);
-        if (!surface.is_support || !(approach > 0.0) || count == normals.size()) continue;
-        normals[count] = surface.normal;
-        missing[count++] = approach;
-        if (support == nullptr) support = &surface;
-    }
-    if (support == nullptr) return;
-    const Vec3 change = shift_by(std::span(normals).first(count), std::span(missing).first(count));
-    particle_.state.velocity += change;
-    ledger_.record_impulse(support->surface, change, false, Vec3{});
-}
-
-void ImpactResolver::land(std::span<const ContactSurface> surfaces) {
-    const Vec3 before = particle_.state.velocity;
-    resolve(surfaces, Rebound::none);
-    shatter_by(particle_.state.velocity - before);
-}
-
 void ImpactResolver::release(Contact& contact) const {
     const auto surfaces = std::span(contact.surfaces).first(static_cast<std::size_t>(contact.count));
     const auto is_support = [](const ContactSurface& surface) { return surface.is_support; };
@@ -78,19 +40,17 @@ void ImpactResolver::release(Contact& contact) const {
     }
 }
 
-void ImpactResolver::go_with_paths(std::span<const ContactSurface> surfaces) {
-    for (const ContactSurface& surface : surfaces) {
-        const double approach = surfaces_.approach_of_path(surface);
-        if (!(approach > 0.0)) continue;
-        const Vec3 change = approach * surface.normal;
-        particle_.state.velocity += change;
-        ledger_.record_impulse(surface.surface, change, false, Vec3{});
-    }
-}
-
-void ImpactResolver::shatter_by(const Vec3& velocity_change) {
-    if (outcome_.is_absorbed() || particle_.state.mass * length(velocity_change) < particle_.shatter_impulse) return;
-    outcome_.end = MoveEnd::shattered;
+bool ImpactResolver::reflect(std::span<const ContactSurface> surfaces, bool ends_substep) {
+    const auto is_met = [&](const ContactSurface& surface) { return surfaces_.is_approached(surface); };
+    if (std::none_of(surfaces.begin(), surfaces.end(), is_met)) return false;
+    settle_on_supports(surfaces);
+    const Vec3 before = particle_.state.velocity;
+    if (scratch_.record_loads) ledger_.begin_impact(ends_substep ? surfaces_.approach(surfaces) : 0.0);
+    resolve(surfaces, Rebound::by_material);
+    ledger_.end_impact();
+    scratch_.supported_by.clear();  // the next impact ends no contact interval
+    shatter_by(particle_.state.velocity - before);
+    return true;
 }
 
 /// Resolves an impact as a bounce off one surface if that does not lead into another surface. Otherwise resolves one
@@ -132,15 +92,85 @@ bool ImpactResolver::try_single(std::span<const ContactSurface> surfaces, const 
     return true;
 }
 
-/// Returns true if, at every velocity, the particle approaches at least one of several closing surfaces. Impulses would
-/// then grow without bound.
-bool ImpactResolver::leave_no_way_out(std::span<const ContactSurface> surfaces, const Vec3& velocity,
-                                      double speed) const {
-    const auto advances = [&](const ContactSurface& surface) { return surfaces_.surface_normal_speed(surface) > 0.0; };
-    if (std::none_of(surfaces.begin(), surfaces.end(), advances)) return false;
-    return std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& surface) {
-        return surfaces_.surface_normal_speed(surface) - dot(velocity, surface.normal) > kImpactResidual * speed;
-    });
+void ImpactResolver::apply_bounce(const ContactSurface& surface, Rebound rebound) {
+    const Material& material = surfaces_.material_of(surface.surface);
+    const double approach = -surfaces_.separation_speed(surface);
+    const double restitution = rebound == Rebound::none ? 0.0 : material.restitution_at(approach);
+    if (surfaces_.is_dynamic(surface.surface)) {
+        bounce_off_body(surface, material, restitution);
+        return;
+    }
+    // Relative to the surface's material.
+    const Vec3 carried = surfaces_.velocity_of(surface);
+    const bool is_driven = carried != Vec3{};
+    Motion motion{particle_.state.velocity, particle_.spin};
+    if (is_driven) motion.velocity -= carried;
+    motion = material.is_random()
+                 ? random_reflection(motion, surface, material, restitution)
+                 : bounce(motion, particle_.state.radius, surface.normal, restitution, material.friction);
+    if (is_driven && !outcome_.is_absorbed()) motion.velocity += carried;
+    particle_.state.velocity = motion.velocity;
+    particle_.spin = motion.spin;
+}
+
+/// Absorbs the particle, or reflects it diffusely or as a mirror, by the particle's own random numbers. Source: J. C.
+/// Maxwell, "On stresses in rarified gases", Phil. Trans. 170, 1879.
+Motion ImpactResolver::random_reflection(Motion motion, const ContactSurface& surface, const Material& material,
+                                         double restitution) {
+    RandomSequence random(rules_.settings.seed, kImpactStream, particle_.id, particle_.draws);
+    if (material.absorption > 0.0 && random.uniform() < material.absorption) {
+        outcome_.end = MoveEnd::absorbed;
+        motion = {};
+    } else if (material.diffuse > 0.0 && random.uniform() < material.diffuse) {
+        scratch_.driven = scratch_.driven || material.wall_temperature.has_value();
+        motion.velocity =
+            material.wall_temperature
+                ? thermal_velocity(surface.normal,
+                                   std::sqrt(kBoltzmann * *material.wall_temperature / particle_.state.mass), random)
+                : length(motion.velocity) * cosine_direction(surface.normal, random);
+    } else {
+        motion = bounce(motion, particle_.state.radius, surface.normal, restitution, material.friction);
+    }
+    particle_.draws = random.draws();
+    return motion;
+}
+
+void ImpactResolver::bounce_off_body(const ContactSurface& surface, const Material& material, double restitution) {
+    const ForceInput& state = particle_.state;
+    const BodyId body = rules_.bodies.body_of(surface.surface);
+    const Mobility mobility = rules_.bodies.mobility(body, state.time);
+    const DynamicSurface dynamic{surface.normal, restitution, material.friction, surfaces_.velocity_of(surface),
+                                 mobility};
+    const Motion after = bounce_off_dynamic({state.velocity, particle_.spin}, state, dynamic);
+    const Vec3 impulse = state.mass * (particle_.state.velocity - after.velocity);
+    particle_.state.velocity = after.velocity;
+    particle_.spin = after.spin;
+    const Vec3 point = state.position - state.radius * surface.normal;
+    surfaces_.note_given(body, {impulse, cross(point - mobility.center, impulse)});
+}
+
+/// Removes the rounding by which supporting surfaces are approached. This impulse belongs to no impact.
+void ImpactResolver::settle_on_supports(std::span<const ContactSurface> surfaces) {
+    std::array<Vec3, Contact::kMostSurfaces> normals;
+    std::array<double, Contact::kMostSurfaces> missing{};
+    std::size_t count = 0;
+    const ContactSurface* support = nullptr;
+    for (const ContactSurface& surface : surfaces) {
+        const double approach = -surfaces_.separation_speed(surface);
+        if (!surface.is_support || !(approach > 0.0) || count == normals.size()) continue;
+        normals[count] = surface.normal;
+        missing[count++] = approach;
+        if (support == nullptr) support = &surface;
+    }
+    if (support == nullptr) return;
+    const Vec3 change = shift_by(std::span(normals).first(count), std::span(missing).first(count));
+    particle_.state.velocity += change;
+    ledger_.record_impulse(support->surface, change, false, Vec3{});
+}
+
+void ImpactResolver::shatter_by(const Vec3& velocity_change) {
+    if (outcome_.is_absorbed() || particle_.state.mass * length(velocity_change) < particle_.shatter_impulse) return;
+    outcome_.end = MoveEnd::shattered;
 }
 
 /// Resolves one impact on all surfaces, and the further impacts that result from it.
@@ -169,22 +199,17 @@ void ImpactResolver::resolve_simultaneously(std::span<const ContactSurface> surf
     stop_approach(surfaces);
 }
 
-/// Applies and records the result of an impact on several surfaces. scale: speed of the particle and the surfaces, m/s.
-void ImpactResolver::apply(const ImpactResult& result, std::span<const ContactSurface> met,
-                           std::span<const bool> is_met, double scale, int pass) {
-    for (std::size_t k = 0; k < met.size(); ++k) {
-        if (result.velocity_change[k] == Vec3{}) continue;
-        // If the surface was not approached, an impulse within rounding does not count as a hit.
-        const bool is_hit = is_met[k] || length(result.velocity_change[k]) > kCoulombResidual * scale;
-        const Vec3 before = particle_.state.velocity;
-        particle_.state.velocity += result.velocity_change[k];
-        ledger_.record_impulse(met[k].surface, result.velocity_change[k], pass == 0 && is_hit,
-                               spin_change_by(result.velocity_change[k], met[k].normal, particle_.state.radius));
-        if (pass > 0 && is_hit) ledger_.mark_as_repeated();
-        if (is_hit) ledger_.log_contact(met[k], before);
-    }
-    particle_.state.velocity = result.after.velocity;
-    particle_.spin = result.after.spin;
+/// Returns the surfaces with the fastest approach, as many as one problem can contain.
+std::span<const ContactSurface> ImpactResolver::foremost(std::span<const ContactSurface> surfaces,
+                                                         Foremost& chosen) const {
+    if (surfaces.size() <= chosen.size()) return surfaces;
+    const auto is_before = [&](const ContactSurface& a, const ContactSurface& b) {
+        const double separation_a = surfaces_.separation_speed(a);
+        const double separation_b = surfaces_.separation_speed(b);
+        return separation_a != separation_b ? separation_a < separation_b : a.surface < b.surface;
+    };
+    std::partial_sort_copy(surfaces.begin(), surfaces.end(), chosen.begin(), chosen.end(), is_before);
+    return chosen;
 }
 
 ImpactSurface ImpactResolver::in_problem(const ContactSurface& surface, Rebound rebound) const {
@@ -202,17 +227,33 @@ ImpactSurface ImpactResolver::in_problem(const ContactSurface& surface, Rebound 
             surface.is_support};
 }
 
-/// Returns the surfaces with the fastest approach, as many as one problem can contain.
-std::span<const ContactSurface> ImpactResolver::foremost(std::span<const ContactSurface> surfaces,
-                                                         Foremost& chosen) const {
-    if (surfaces.size() <= chosen.size()) return surfaces;
-    const auto is_before = [&](const ContactSurface& a, const ContactSurface& b) {
-        const double separation_a = surfaces_.separation_speed(a);
-        const double separation_b = surfaces_.separation_speed(b);
-        return separation_a != separation_b ? separation_a < separation_b : a.surface < b.surface;
-    };
-    std::partial_sort_copy(surfaces.begin(), surfaces.end(), chosen.begin(), chosen.end(), is_before);
-    return chosen;
+/// Returns true if surfaces that close on each other leave the particle no velocity at which it approaches none of
+/// them. Impulses would then grow without bound.
+bool ImpactResolver::leave_no_way_out(std::span<const ContactSurface> surfaces, const Vec3& velocity,
+                                      double speed) const {
+    const auto advances = [&](const ContactSurface& surface) { return surfaces_.surface_normal_speed(surface) > 0.0; };
+    if (std::none_of(surfaces.begin(), surfaces.end(), advances)) return false;
+    return std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& surface) {
+        return surfaces_.surface_normal_speed(surface) - dot(velocity, surface.normal) > kImpactResidual * speed;
+    });
+}
+
+/// Applies and records the result of an impact on several surfaces. scale: speed of the particle and the surfaces, m/s.
+void ImpactResolver::apply(const ImpactResult& result, std::span<const ContactSurface> met,
+                           std::span<const bool> is_met, double scale, int pass) {
+    for (std::size_t k = 0; k < met.size(); ++k) {
+        if (result.velocity_change[k] == Vec3{}) continue;
+        // Without an approach, an impulse as small as rounding is no hit.
+        const bool is_hit = is_met[k] || length(result.velocity_change[k]) > kCoulombResidual * scale;
+        const Vec3 before = particle_.state.velocity;
+        particle_.state.velocity += result.velocity_change[k];
+        ledger_.record_impulse(met[k].surface, result.velocity_change[k], pass == 0 && is_hit,
+                               spin_change_by(result.velocity_change[k], met[k].normal, particle_.state.radius));
+        if (pass > 0 && is_hit) ledger_.mark_as_repeated();
+        if (is_hit) ledger_.log_contact(met[k], before);
+    }
+    particle_.state.velocity = result.after.velocity;
+    particle_.spin = result.after.spin;
 }
 
 /// Removes the remaining approach speeds, which are rounding errors.
@@ -249,63 +290,6 @@ void ImpactResolver::resolve_sequentially(std::span<const ContactSurface> surfac
     move_out_of_corner(surfaces);
 }
 
-void ImpactResolver::apply_bounce(const ContactSurface& surface, Rebound rebound) {
-    const Material& material = surfaces_.material_of(surface.surface);
-    const double approach = -surfaces_.separation_speed(surface);
-    const double restitution = rebound == Rebound::none ? 0.0 : material.restitution_at(approach);
-    if (surfaces_.is_dynamic(surface.surface)) {
-        bounce_off_body(surface, material, restitution);
-        return;
-    }
-    // The bounce is computed relative to the surface's material.
-    const Vec3 carried = surfaces_.velocity_of(surface);
-    const bool is_driven = carried != Vec3{};
-    Motion motion{particle_.state.velocity, particle_.spin};
-    if (is_driven) motion.velocity -= carried;
-    motion = material.is_random()
-                 ? random_reflection(motion, surface, material, restitution)
-                 : bounce(motion, particle_.state.radius, surface.normal, restitution, material.friction);
-    if (is_driven && !outcome_.is_absorbed()) motion.velocity += carried;
-    particle_.state.velocity = motion.velocity;
-    particle_.spin = motion.spin;
-}
-
-void ImpactResolver::bounce_off_body(const ContactSurface& surface, const Material& material, double restitution) {
-    const ForceInput& state = particle_.state;
-    const BodyId body = rules_.bodies.body_of(surface.surface);
-    const Mobility mobility = rules_.bodies.mobility(body, state.time);
-    const DynamicSurface dynamic{surface.normal, restitution, material.friction, surfaces_.velocity_of(surface),
-                                 mobility};
-    const Motion after = bounce_off_dynamic({state.velocity, particle_.spin}, state, dynamic);
-    const Vec3 impulse = state.mass * (particle_.state.velocity - after.velocity);
-    particle_.state.velocity = after.velocity;
-    particle_.spin = after.spin;
-    const Vec3 point = state.position - state.radius * surface.normal;
-    surfaces_.note_given(body, {impulse, cross(point - mobility.center, impulse)});
-}
-
-/// Absorbs the particle, or reflects it diffusely or as a mirror, by the particle's own random numbers. Source: J. C.
-/// Maxwell, "On stresses in rarified gases", Phil. Trans. 170, 1879.
-Motion ImpactResolver::random_reflection(Motion motion, const ContactSurface& surface, const Material& material,
-                                         double restitution) {
-    RandomSequence random(rules_.settings.seed, kImpactStream, particle_.id, particle_.draws);
-    if (material.absorption > 0.0 && random.uniform() < material.absorption) {
-        outcome_.end = MoveEnd::absorbed;
-        motion = {};
-    } else if (material.diffuse > 0.0 && random.uniform() < material.diffuse) {
-        scratch_.driven = scratch_.driven || material.wall_temperature.has_value();
-        motion.velocity =
-            material.wall_temperature
-                ? thermal_velocity(surface.normal,
-                                   std::sqrt(kBoltzmann * *material.wall_temperature / particle_.state.mass), random)
-                : length(motion.velocity) * cosine_direction(surface.normal, random);
-    } else {
-        motion = bounce(motion, particle_.state.radius, surface.normal, restitution, material.friction);
-    }
-    particle_.draws = random.draws();
-    return motion;
-}
-
 void ImpactResolver::move_out_of_corner(std::span<const ContactSurface> surfaces) {
     std::array<Vec3, 3> normals;
     std::size_t count = 0;
@@ -318,6 +302,22 @@ void ImpactResolver::move_out_of_corner(std::span<const ContactSurface> surfaces
     particle_.state.velocity = project_off(before - carried, {normals.data(), count}) + carried;
     ledger_.record_impulse(first.surface, particle_.state.velocity - before, false);
     ledger_.log_contact(first, before);
+}
+
+void ImpactResolver::land(std::span<const ContactSurface> surfaces) {
+    const Vec3 before = particle_.state.velocity;
+    resolve(surfaces, Rebound::none);
+    shatter_by(particle_.state.velocity - before);
+}
+
+void ImpactResolver::go_with_paths(std::span<const ContactSurface> surfaces) {
+    for (const ContactSurface& surface : surfaces) {
+        const double approach = surfaces_.approach_of_path(surface);
+        if (!(approach > 0.0)) continue;
+        const Vec3 change = approach * surface.normal;
+        particle_.state.velocity += change;
+        ledger_.record_impulse(surface.surface, change, false, Vec3{});
+    }
 }
 
 }  // namespace ricochet

@@ -36,11 +36,11 @@ public:
     ImpactResolver& operator=(const ImpactResolver&) = delete;
 
     /// Resolves an impact on all surfaces of a contact together. Returns false, and changes nothing, if none is
-    /// approached. Dynamic bodies change their velocities for this particle at once, but their positions follow their
-    /// old paths until the move ends. is_fast: true for an impact that ends the substep of a dynamic body, false for
-    /// one that begins contact.
-    bool reflect(std::span<const ContactSurface> surfaces, bool is_fast = true);
-    /// Does the same without a rebound.
+    /// approached. For the particle, dynamic bodies change their velocities at once; their positions follow their paths
+    /// until the move ends. ends_substep: true for an impact that ends the substep of a dynamic body, false for
+    /// surfaces at rest and for an impact that begins contact.
+    bool reflect(std::span<const ContactSurface> surfaces, bool ends_substep = true);
+    /// The same without a rebound.
     void land(std::span<const ContactSurface> surfaces);
     /// Clears `is_support` of surfaces that no longer support the particle at an impact. The particle may separate from
     /// them, or their body may return after an impulse in this move.
@@ -56,7 +56,7 @@ public:
     [[nodiscard]] const ImpulseLedger& ledger() const { return ledger_; }
 
 private:
-    enum class Rebound { by_material, none };
+    enum class Rebound { by_material, none };  // none: for a landing
     using Foremost = std::array<ContactSurface, ImpactResult::kMostSurfaces>;
 
     void resolve(std::span<const ContactSurface> surfaces, Rebound rebound);

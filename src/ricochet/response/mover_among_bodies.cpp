@@ -2,6 +2,7 @@
 // frames, and on a body that recedes from the particle.
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 
 #include "ricochet/core/tolerances.h"
@@ -81,11 +82,53 @@ const ContactSurface* first_dynamic(const MovingColliders& bodies, const Contact
     return found == surfaces.end() ? nullptr : &*found;
 }
 
+/// Returns true if the particle comes back to a body whose velocity jump has released it at a speed, hardly faster than
+/// it has left. The end of a step has only divided the contact. slow: slowest rebound, m/s.
+bool lands_again(const MovingColliders& bodies, const SurfaceKinematics& surfaces, const Contact& contact,
+                 const std::optional<double>& release_speed, double slow) {
+    if (!release_speed || surfaces.approach(contact.all()) > kLandsAgain * std::max(*release_speed, slow)) return false;
+    return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
+        return bodies.is_dynamic(bodies.body_of(surface.surface));
+    });
+}
+
 }  // namespace
 
-/// Follows a receding dynamic body. A particle that separates from the body at near-zero speed would touch it
-/// repeatedly with zero impulse. The particle therefore moves with the body until they are apart. contact: replaced by
-/// the next contact. Returns false if the contact is not of this kind.
+/// Resolves a contact with surfaces of which at least one belongs to a body.
+std::optional<Contact> ParticleMover::resolve_contact_with_bodies(const Flight& flight, const Contact& contact) {
+    const ImpactOnBody impact = resolve_impact_on_body(flight, contact);
+    if (step_.outcome().is_absorbed()) return std::nullopt;
+    if (impact.ends_substep && surfaces().approaches_pushed_body(contact.all())) return follow_receding_body(contact);
+    const double before = step_.remaining();
+    auto next = begin_or_continue_contact(flight, contact, impact.arriving);
+    if (next || particle_.contact.count > 0 || step_.remaining() < before) return next;
+    if (!release_speed_) release_speed_ = impact.release_speed;
+    // The body leaves the particle, but until the move's end its path keeps it in the particle's way.
+    if (surfaces().approach_of_paths(contact.all()) > impact.slowest_rebound) return follow_receding_body(contact);
+    step_.impact().go_with_paths(contact.all());
+    return next;
+}
+
+ParticleMover::ImpactOnBody ParticleMover::resolve_impact_on_body(const Flight& flight, const Contact& contact) {
+    ImpactOnBody impact{{particle_.state.velocity, particle_.spin},
+                        slowest_rebound(rules_, frame_rules_, particle_, contact)};
+    has_met_moving_ = true;
+    contact_phase_.remember(contact);
+    ledger().note_driven();
+    impact.ends_substep = surfaces().approach(contact.all()) > impact.slowest_rebound;
+    step_.set_resting_speed(impact.slowest_rebound);
+    const bool is_resumed = lands_again(rules_.bodies, surfaces(), contact, release_speed_, impact.slowest_rebound);
+    if (is_resumed) impact.release_speed = std::exchange(release_speed_, {});
+    ledger().set_hits(!is_resumed);
+    const bool is_impact = step_.impact().reflect(contact.all(), impact.ends_substep);
+    ledger().set_hits(true);
+    count_impact(flight, is_impact, is_resumed);
+    return impact;
+}
+
+/// Follows a receding dynamic body. A particle that separates from it at near-zero speed would touch it repeatedly with
+/// zero impulse, so it moves with the body until they are apart. contact: replaced by the next contact. Returns false
+/// if the contact is no such touch.
 bool ParticleMover::follows_receding_body(std::optional<Contact>& contact) {
     if (!step_.has_budget() || !(step_.remaining() > 0.0)) return false;
     if (first_dynamic(rules_.bodies, *contact) == nullptr) return false;
@@ -236,18 +279,7 @@ std::optional<Contact> ParticleMover::begin_in_frame(BodyId body, const Contact&
     });
 }
 
-/// Returns true if the particle returns to dynamic bodies after a velocity jump has released it, hardly faster than it
-/// left. Such a contact was only interrupted by the end of a step.
-bool ParticleMover::lands_again(const Contact& contact, double slow) const {
-    if (!release_speed_ || surfaces().approach(contact.all()) > kLandsAgain * std::max(*release_speed_, slow)) {
-        return false;
-    }
-    return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
-        return rules_.bodies.is_dynamic(rules_.bodies.body_of(surface.surface));
-    });
-}
-
-/// Moves the particle with a dynamic body that it has hit. The body starts to recede only in the next move.
+/// Moves the particle with a dynamic body that it has hit. The body moves away only from the next move on.
 std::optional<Contact> ParticleMover::follow_receding_body(const Contact& contact) {
     const SurfaceId surface = first_dynamic(rules_.bodies, contact)->surface;
     const BodyId body = rules_.bodies.body_of(surface);

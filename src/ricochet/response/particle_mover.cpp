@@ -6,7 +6,9 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/carried_particle.h"
 #include "ricochet/response/contact_with_bodies.h"
+#include "ricochet/response/exact.h"
 #include "ricochet/response/path_motion.h"
+#include "ricochet/response/supported_acceleration.h"
 
 namespace ricochet {
 namespace {
@@ -27,7 +29,61 @@ void cut(Flight& flight, double duration, const Integrator& integrator, const Fo
     flight.path.duration = duration;
 }
 
+/// Returns the duration, in s, for which the next flight is planned.
+double planned_duration(const ParticleStep& step, bool is_first) {
+    const MovingParticle& particle = step.particle();
+    if (particle.beyond == 0.0) return step.remaining();
+    const bool is_planned = is_first && particle.planned != nullptr;
+    return is_planned ? particle.planned->path.duration : step.remaining() + particle.beyond;
+}
+
+/// Returns the horizon of the last flight of a step: as far as its path is known. That requires uniform acceleration
+/// and steps of the run's length.
+std::optional<LookAhead> look_ahead_of(const ParticleStep& step, const Flight& flight) {
+    const ResponseRules& rules = step.rules();
+    const MovingParticle& particle = step.particle();
+    const ForceInput& state = particle.state;
+    const double remaining = step.remaining();
+    const double time_step = rules.settings.time_step;
+    const bool is_known = rules.look_ahead && step.outcome().meetings() < kBouncesInNarrowGap &&
+                          rules.forces.is_uniform() && particle.planned == nullptr && particle.beyond == 0.0 &&
+                          state.coupling == nullptr && flight.path.duration == remaining &&
+                          remaining <= kWholeStep * time_step;
+    if (!is_known) return std::nullopt;
+    const double acceleration = length(flight.acceleration);
+    const int steps = acceleration == 0.0 ? kMaxLookAheadSteps : kMaxLookAheadStepsCurved;
+    const double left = rules.end - (state.time + remaining);  // of the run, after this step
+    if (left < 0.5 * time_step) return std::nullopt;
+    const double duration = remaining + std::min(steps * time_step, left + time_step);
+    LookAhead look_ahead{look_ahead_path(rules.settings.integrator, flight, time_step, duration), 0.0,
+                         remaining + time_step, kWholeStep * time_step};
+    const double speed = length(flight.end_velocity) + acceleration * duration;
+    const double largest = max_abs(flight.path.end) + speed * duration + state.radius;
+    if (!(largest < kLargestCoordinate) || !(speed < kMaxSpeed)) return std::nullopt;
+    const double clocks = 4.0 * ulp(state.time + duration) * speed;  // the clock's times are rounded
+    look_ahead.margin = kLookAheadSlack * largest + 0.125 * time_step * time_step * acceleration + clocks;
+    return look_ahead;
+}
+
 }  // namespace
+
+ExactResponse::ExactResponse(const ResponseRules& rules) : Response(rules), frame_rules_(rules_) {}
+
+MoveOutcome ExactResponse::move(MovingParticle& particle, double duration, MoveScratch& scratch) const {
+    return ParticleMover(rules_, frame_rules_, particle, duration, scratch).run();
+}
+
+SupportedAcceleration ExactResponse::supported_acceleration(const MovingParticle& particle, const Vec3& pull) const {
+    return acceleration_in_contact(rules_, particle, pull);
+}
+
+void ExactResponse::add_weight(const MovingParticle& particle, double duration, std::vector<SurfaceHit>& hits) const {
+    MovingParticle copy = particle;
+    MoveScratch scratch;
+    ParticleStep step(rules_, copy, duration, scratch);
+    ContactPhase(step).record_weight();
+    hits.insert(hits.end(), scratch.hits.begin(), scratch.hits.end());
+}
 
 MoveOutcome ParticleMover::run() {
     MoveOutcome& outcome = step_.outcome();
@@ -39,7 +95,7 @@ MoveOutcome ParticleMover::run() {
         outcome.free_for = outcome.candidates_for = 0.0;
         // Contacts are large to copy, so one is assigned only if needed.
         if (!contact) contact = advance_flight(flight, std::exchange(flies_anew_, false) || is_first);
-        while (contact && !outcome.is_absorbed() && may_answer()) contact = answer(flight, *contact);
+        while (contact && !outcome.is_absorbed() && may_resolve_contact()) contact = resolve_contact(flight, *contact);
         if (outcome.is_absorbed()) break;
         if (contact && !follows_receding_body(contact)) {
             give_up(step_);
@@ -59,12 +115,12 @@ std::optional<Contact> ParticleMover::resume_contact() {
 /// Moves the particle in free flight to the end of the step or to the next contact, which is returned. flight: on input
 /// the last flight, on output the new one.
 std::optional<Contact> ParticleMover::advance_flight(Flight& flight, bool is_first) {
-    const double remaining = planned_duration(is_first);
+    const double remaining = planned_duration(step_, is_first);
     const Integrator integrator = is_without_impulse_ ? IntegratorKind::ballistic : rules_.settings.integrator;
     flight = is_first ? first_flight(rules_, particle_, remaining, integrator)
                       : resume_flight(integrator, rules_.forces, particle_.state, flight, remaining);
     if (particle_.beyond > 0.0) cut(flight, step_.remaining(), integrator, rules_.forces);
-    const auto look_ahead = look_ahead_of(flight);
+    const auto look_ahead = look_ahead_of(step_, flight);
     step_.log().note_impact();
     const auto contact = follow_flight(step_, flight, integrator, look_ahead ? &*look_ahead : nullptr,
                                        is_first ? particle_.candidates : ContactCandidates{});
@@ -74,9 +130,9 @@ std::optional<Contact> ParticleMover::advance_flight(Flight& flight, bool is_fir
     return contact;
 }
 
-/// Returns false if the budget of bounces is used up, or if moving surfaces pinch the particle. A particle counts as
-/// pinched if many bounces have taken almost no time. More bounces would not help then.
-bool ParticleMover::may_answer() {
+/// Returns false if the budget of bounces is used up, or if moving surfaces close on the particle. In the latter case
+/// many bounces have taken almost no time, and more would not help.
+bool ParticleMover::may_resolve_contact() {
     if (!step_.has_budget()) return false;
     const std::uint32_t meetings = step_.outcome().meetings();
     if (!has_met_moving_ || meetings < meetings_at_check_ + kBouncesUntilPinched) return true;
@@ -85,70 +141,46 @@ bool ParticleMover::may_answer() {
     return before - step_.remaining() > kPinchedProgress * step_.duration();
 }
 
-/// Resolves a contact as an impact and, if the rebound is slow, continues with lasting contact.
-std::optional<Contact> ParticleMover::answer(const Flight& flight, Contact& contact) {
+/// Resolves a contact: by an impact and, if the rebound is slow, by lasting contact.
+std::optional<Contact> ParticleMover::resolve_contact(const Flight& flight, Contact& contact) {
     step_.impact().release(contact);
-    if (!(flight.kick_duration > 0.0) || !meets_moving(contact)) return answer_impact(flight, contact);
+    if (!meets_moving(contact)) return resolve_contact_at_rest(flight, contact);
+    if (!(flight.kick_duration > 0.0)) return resolve_contact_with_bodies(flight, contact);
     retract_kick(flight);
-    return answer_impact(Flight{}, contact);
+    return resolve_contact_with_bodies(Flight{}, contact);
 }
 
-std::optional<Contact> ParticleMover::answer_impact(const Flight& flight, const Contact& contact) {
-    const ResolvedImpact impact = resolve_impact(flight, contact);
-    if (step_.outcome().is_absorbed()) return std::nullopt;
-    if (impact.is_fast && surfaces().approaches_pushed_body(contact.all())) return follow_receding_body(contact);
-    return begin_or_continue_contact(flight, contact, impact);
-}
-
-ParticleMover::ResolvedImpact ParticleMover::resolve_impact(const Flight& flight, const Contact& contact) {
-    ResolvedImpact impact{{particle_.state.velocity, particle_.spin}, rules_.settings.resting_speed};
-    impact.meets_moving = meets_moving(contact);
-    has_met_moving_ = has_met_moving_ || impact.meets_moving;
+/// Resolves a contact with surfaces at rest.
+std::optional<Contact> ParticleMover::resolve_contact_at_rest(const Flight& flight, const Contact& contact) {
+    const Motion arriving{particle_.state.velocity, particle_.spin};
     contact_phase_.remember(contact);
-    if (impact.meets_moving) {
-        ledger().note_driven();
-        impact.slowest_rebound = ricochet::slowest_rebound(rules_, frame_rules_, particle_, contact);
-        impact.is_fast = surfaces().approach(contact.all()) > impact.slowest_rebound;
-    }
-    step_.set_resting_speed(impact.slowest_rebound);
-    const bool is_resumed = lands_again(contact, impact.slowest_rebound);
-    if (is_resumed) impact.release_speed = std::exchange(release_speed_, {});
-    ledger().set_hits(!is_resumed);
-    const bool is_impact = step_.impact().reflect(contact.all(), impact.is_fast);
-    ledger().set_hits(true);
+    step_.set_resting_speed(rules_.settings.resting_speed);
+    const bool is_impact = step_.impact().reflect(contact.all(), /*ends_substep=*/false);
+    count_impact(flight, is_impact, false);
+    if (step_.outcome().is_absorbed()) return std::nullopt;
+    return begin_or_continue_contact(flight, contact, arriving);
+}
+
+/// Counts and logs an impact, or a contact without one. is_resumed: it only resumes a contact.
+void ParticleMover::count_impact(const Flight& flight, bool is_impact, bool is_resumed) {
     ++(is_impact && !is_resumed ? step_.outcome().bounces : step_.outcome().touches);
     if (is_impact) release_speed_.reset();
     // After a kick, the landing starts from the motion before the impact. Impact and landing are therefore logged as
     // one.
     if (flight.kick_duration == 0.0) step_.log().note_impact();
-    return impact;
 }
 
 std::optional<Contact> ParticleMover::begin_or_continue_contact(const Flight& flight, const Contact& contact,
-                                                                const ResolvedImpact& impact) {
+                                                                const Motion& arriving) {
     const double before = step_.remaining();
-    auto next = begin_contact(flight, contact, impact.arriving);
-    const auto has_begun = [&] { return next || particle_.contact.count > 0 || step_.remaining() < before; };
-    if (!has_begun() && flight.kick_duration == 0.0) next = continue_contact(flight, contact);
-    if (!has_begun() && !release_speed_) release_speed_ = impact.release_speed;
-    if (!impact.meets_moving || has_begun()) return next;
-    // The body recedes from the particle, but until the end of the move its path still blocks the particle.
-    if (surfaces().approach_of_paths(contact.all()) > impact.slowest_rebound) return follow_receding_body(contact);
-    step_.impact().go_with_paths(contact.all());
+    auto next = begin_contact(flight, contact, arriving);
+    const bool has_begun = next || particle_.contact.count > 0 || step_.remaining() < before;
+    if (!has_begun && flight.kick_duration == 0.0) next = continue_contact(flight, contact);
     return next;
 }
 
-void ParticleMover::finish() {
-    if (particle_.contact.count == 0) {
-        particle_.contact = release_speed_ ? ContactState::release_at(*release_speed_) : ContactState{};
-    }
-    keep_stored_position(step_);
-    ledger().close();
-    step_.log().note_impact();
-}
-
-/// Continues contact after an impact with the surfaces that have supported the particle, unless it separates from them.
-/// No landing takes place. At the end of a step, the surfaces are stored for the next step.
+/// Continues contact after an impact with the surfaces that have supported the particle, if it does not leave them.
+/// There is no landing. At the end of a step they are kept for the next one.
 std::optional<Contact> ParticleMover::continue_contact(const Flight& flight, const Contact& contact) {
     const Contact supporting = supporting_part(contact);
     if (supporting.count == 0) return std::nullopt;
@@ -164,11 +196,13 @@ std::optional<Contact> ParticleMover::continue_contact(const Flight& flight, con
     return std::nullopt;
 }
 
-/// Returns the duration, in s, for which the next flight is planned.
-double ParticleMover::planned_duration(bool is_first) const {
-    if (particle_.beyond == 0.0) return step_.remaining();
-    const bool is_planned = is_first && particle_.planned != nullptr;
-    return is_planned ? particle_.planned->path.duration : step_.remaining() + particle_.beyond;
+void ParticleMover::finish() {
+    if (particle_.contact.count == 0) {
+        particle_.contact = release_speed_ ? ContactState::release_at(*release_speed_) : ContactState{};
+    }
+    keep_stored_position(step_);
+    ledger().close();
+    step_.log().note_impact();
 }
 
 /// Subtracts the part of a kick that belongs to the remaining time, at an impact on a moving surface. From then on the
@@ -185,32 +219,6 @@ void ParticleMover::retract_kick(const Flight& flight) {
 void ParticleMover::leave_flight() {
     flies_anew_ = true;
     is_without_impulse_ = kicks_first(rules_.settings.integrator.kind);
-}
-
-/// Returns the look-ahead of the last flight of a step, as far as its path is known. A path is known only under uniform
-/// acceleration and in steps of the run's length.
-std::optional<LookAhead> ParticleMover::look_ahead_of(const Flight& flight) const {
-    const ForceInput& state = particle_.state;
-    const double remaining = step_.remaining();
-    const double time_step = rules_.settings.time_step;
-    const bool is_known = rules_.look_ahead && step_.outcome().meetings() < kBouncesInNarrowGap &&
-                          rules_.forces.is_uniform() && particle_.planned == nullptr && particle_.beyond == 0.0 &&
-                          state.coupling == nullptr && flight.path.duration == remaining &&
-                          remaining <= kWholeStep * time_step;
-    if (!is_known) return std::nullopt;
-    const double acceleration = length(flight.acceleration);
-    const int steps = acceleration == 0.0 ? kMaxLookAheadSteps : kMaxLookAheadStepsCurved;
-    const double left = rules_.end - (state.time + remaining);  // s, time of the run after this step
-    if (left < 0.5 * time_step) return std::nullopt;
-    const double duration = remaining + std::min(steps * time_step, left + time_step);
-    LookAhead look_ahead{look_ahead_path(rules_.settings.integrator, flight, time_step, duration), 0.0,
-                         remaining + time_step, kWholeStep * time_step};
-    const double speed = length(flight.end_velocity) + acceleration * duration;
-    const double largest = max_abs(flight.path.end) + speed * duration + state.radius;
-    if (!(largest < kLargestCoordinate) || !(speed < kMaxSpeed)) return std::nullopt;
-    const double clocks = 4.0 * ulp(state.time + duration) * speed;  // the clock's times are rounded
-    look_ahead.margin = kLookAheadSlack * largest + 0.125 * time_step * time_step * acceleration + clocks;
-    return look_ahead;
 }
 
 }  // namespace ricochet

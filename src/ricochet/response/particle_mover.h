@@ -18,7 +18,7 @@ namespace ricochet {
 /// 1. Resume contact: lasting contact continues from the last step.
 /// 2. Advance flight: the integrator gives a path; its first contact is found; the particle moves there in certified
 ///    segments and stops at a safe position.
-/// 3. Resolve impact: restitution, friction and spin.
+/// 3. Resolve impact: restitution, friction and spin. mover_among_bodies.cpp has impacts on bodies.
 /// 4. Begin or continue contact: if the rebound is slow, the particle slides, rolls or rests on the surfaces.
 /// 5. Finish.
 /// Stages 2 to 4 repeat until the time is used up. Stages 1, 2 and 4 return the next contact, if there is one.
@@ -36,30 +36,31 @@ public:
     MoveOutcome run();
 
 private:
-    /// Result of an impact.
-    struct ResolvedImpact {
-        Motion arriving;            ///< motion before the impact
-        double slowest_rebound;     ///< m/s; slower rebounds count as contact
-        bool meets_moving = false;  ///< true if one of the surfaces belongs to a moving body
-        bool is_fast = false;       ///< true if it meets a body faster than `slowest_rebound`
-        /// Speed, in m/s, at which a velocity jump of a body had released the particle. Set if the impact only resumes
-        /// that contact.
+    [[nodiscard]] std::optional<Contact> resume_contact();
+    /// is_first: the flight does not continue the last one.
+    [[nodiscard]] std::optional<Contact> advance_flight(Flight& flight, bool is_first);
+    [[nodiscard]] bool may_resolve_contact();
+    [[nodiscard]] std::optional<Contact> resolve_contact(const Flight& flight, Contact& contact);
+    [[nodiscard]] std::optional<Contact> resolve_contact_at_rest(const Flight& flight, const Contact& contact);
+    void count_impact(const Flight& flight, bool is_impact, bool is_resumed);
+    [[nodiscard]] std::optional<Contact> begin_or_continue_contact(const Flight& flight, const Contact& contact,
+                                                                   const Motion& arriving);
+    [[nodiscard]] std::optional<Contact> continue_contact(const Flight& flight, const Contact& contact);
+    void finish();
+
+    // Impacts on bodies.
+
+    struct ImpactOnBody {
+        Motion arriving;            ///< the motion before it
+        double slowest_rebound;     ///< m/s; slower rebounds are contact
+        bool ends_substep = false;  ///< a dynamic body gets another velocity at once, see ImpactResolver::reflect()
+        /// Speed at which a body's velocity jump had released the particle, m/s, if the impact only resumes that
+        /// contact.
         std::optional<double> release_speed{};
     };
 
-    [[nodiscard]] std::optional<Contact> resume_contact();
-    [[nodiscard]] std::optional<Contact> advance_flight(Flight& flight, bool is_first);
-    [[nodiscard]] bool may_answer();
-    [[nodiscard]] std::optional<Contact> answer(const Flight& flight, Contact& contact);
-    [[nodiscard]] std::optional<Contact> answer_impact(const Flight& flight, const Contact& contact);
-    [[nodiscard]] ResolvedImpact resolve_impact(const Flight& flight, const Contact& contact);
-    [[nodiscard]] std::optional<Contact> begin_or_continue_contact(const Flight& flight, const Contact& contact,
-                                                                   const ResolvedImpact& impact);
-    void finish();
-
-    // Flights.
-    [[nodiscard]] double planned_duration(bool is_first) const;
-    [[nodiscard]] std::optional<LookAhead> look_ahead_of(const Flight& flight) const;
+    [[nodiscard]] std::optional<Contact> resolve_contact_with_bodies(const Flight& flight, const Contact& contact);
+    [[nodiscard]] ImpactOnBody resolve_impact_on_body(const Flight& flight, const Contact& contact);
     void retract_kick(const Flight& flight);
     void leave_flight();
 
@@ -67,7 +68,6 @@ private:
     [[nodiscard]] std::optional<Contact> resume_among_bodies();
     [[nodiscard]] std::optional<Contact> begin_contact(const Flight& flight, const Contact& contact,
                                                        const Motion& arriving);
-    [[nodiscard]] std::optional<Contact> continue_contact(const Flight& flight, const Contact& contact);
     [[nodiscard]] std::optional<Contact> begin_in_frame(BodyId body, const Contact& contact, const Motion& arriving);
     [[nodiscard]] std::optional<Contact> begin_shared();
     [[nodiscard]] std::optional<Contact> follow_shared();
@@ -80,7 +80,6 @@ private:
     [[nodiscard]] bool follows_receding_body(std::optional<Contact>& contact);
     [[nodiscard]] std::optional<Contact> follow_receding_body(const Contact& contact);
     [[nodiscard]] bool is_released_by_jump() const;
-    [[nodiscard]] bool lands_again(const Contact& contact, double slow) const;
 
     [[nodiscard]] bool meets_moving(const Contact& contact) const {
         return std::any_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
@@ -95,7 +94,7 @@ private:
     MovingParticle& particle_;
     ParticleStep step_;
     ContactPhase contact_phase_;
-    std::uint32_t meetings_at_check_ = 0;  // meetings() at the last check in may_answer()
+    std::uint32_t meetings_at_check_ = 0;  // of may_resolve_contact()
     double remaining_at_check_ = std::numeric_limits<double>::infinity();
     int shared_count_ = 0;         // number of contacts with several frames at once
     bool has_met_moving_ = false;  // true if it has touched a surface of a body in this step

@@ -58,7 +58,7 @@ struct Aimed {
         const auto found = find_first_contact({world, scratch.plane_cache}, {path, 0.0}, scratch);
         const auto& contact = found.contact;
         if (!contact) {
-            position = follow_path(found.near, path, path.duration, path.end, scratch.chain).reached.position;
+            position = certify_path(found.near, path, path.duration, path.end, scratch.chain).reached.position;
             return;
         }
         const SafePosition safe_position = find_safe_position(found.near, path, *contact, scratch.chain);

@@ -150,7 +150,7 @@ TEST(FollowPath, CertifiesAnArcOverARidgeWhoseChordIsBlocked) {
     const auto found = query(world, scratch, over, 0.0);
     ASSERT_FALSE(found.contact);
     EXPECT_TRUE(intersects_any(world, over.c[0], over.end));
-    const CertifiedPath followed = follow_path(found.near, over, over.duration, over.end, scratch.chain);
+    const CertifiedPath followed = certify_path(found.near, over, over.duration, over.end, scratch.chain);
     EXPECT_FALSE(followed.blocker);
     EXPECT_EQ(followed.reached.position, over.end);
 }
@@ -165,7 +165,7 @@ TEST(FollowPath, DoesNotTrustAChordThatTheBroadPhaseHasNotCovered) {
     ASSERT_FALSE(found.contact);
     EXPECT_TRUE(intersects_any(world, over.c[0], over.end));
     EXPECT_FALSE(found.near.covers_chord(over, 0.0, over.duration));
-    const CertifiedPath followed = follow_path(found.near, over, over.duration, over.end, scratch.chain);
+    const CertifiedPath followed = certify_path(found.near, over, over.duration, over.end, scratch.chain);
     EXPECT_EQ(followed.reached.position, over.end);
     EXPECT_FALSE(followed.blocker);
 }
@@ -183,7 +183,7 @@ TEST(FollowPath, EndsNextToTinyAndDegenerateTriangles) {
             const Path beside = parabola_path({-1, 0.3, 0.1}, {1, 0, 1}, {0, 0, -1}, 2.0);
             const auto found = query(world, scratch, beside, radius);
             ASSERT_FALSE(found.contact);
-            const CertifiedPath followed = follow_path(found.near, beside, 2.0, beside.end, scratch.chain);
+            const CertifiedPath followed = certify_path(found.near, beside, 2.0, beside.end, scratch.chain);
             EXPECT_EQ(followed.reached.position, beside.end);
             EXPECT_LT(scratch.chain.size(), 100'000U);
         }
@@ -196,7 +196,7 @@ TEST(FollowPath, StopsAtABlockedChord) {
     const Path down = parabola_path({0, 0, 1}, {}, {0, 0, -2}, 2.0);
     const auto found = query(world, scratch, down, 0.0);
     ASSERT_TRUE(found.contact);
-    const CertifiedPath followed = follow_path(found.near, down, down.duration, down.end, scratch.chain);
+    const CertifiedPath followed = certify_path(found.near, down, down.duration, down.end, scratch.chain);
     ASSERT_TRUE(followed.blocker);
     EXPECT_EQ(*followed.blocker, 0U);
     EXPECT_NEAR(followed.reached.time, 1.0, 1e-12);

@@ -77,6 +77,24 @@ struct PieceQuery {
     }
 };
 
+}  // namespace
+
+// If the boxes do not cover the surroundings of a path, the path is tested against every triangle.
+CandidateSet test_triangles_near(const CollisionWorld& world, const QueryMargins& margins, const Path& path,
+                                 NarrowPhase& narrow_phase) {
+    PieceQuery query{world, margins, path, narrow_phase};
+    if (world.culls() && margins.boxes_hold) {
+        query.test_piece(0.0, path.duration, kPieceDepth);
+    } else if (!world.culls() || may_reach_triangles(world, margins, path, 0.0, path.duration)) {
+        query.test_all();
+    }
+    // The chords that a particle follows must not depend on culling.
+    if (!world.culls() && margins.boxes_hold) return CandidateSet::near;
+    return query.candidates;
+}
+
+namespace {
+
 /// Computes when a path first comes near a triangle, piece by piece.
 struct ClearQuery {
     const CollisionWorld& world;
@@ -131,21 +149,6 @@ double broad_phase_margin(const Path& path, const QueryMargins& margins) {
 bool covers_chord(const CollisionWorld& world, const QueryMargins& margins, const Path& path, double from, double to) {
     return path.degree < 2 || world.triangles().empty() || 2.0 * path.sagitta(from, to) <= margins.curvature ||
            !may_reach_triangles(world, margins, path, from, to);
-}
-
-// If the boxes do not cover the surroundings of a path that may reach triangles, the path is tested against every
-// triangle.
-CandidateSet test_triangles_near(const CollisionWorld& world, const QueryMargins& margins, const Path& path,
-                                 NarrowPhase& narrow_phase) {
-    PieceQuery query{world, margins, path, narrow_phase};
-    if (world.culls() && margins.boxes_hold) {
-        query.test_piece(0.0, path.duration, kPieceDepth);
-    } else if (!world.culls() || may_reach_triangles(world, margins, path, 0.0, path.duration)) {
-        query.test_all();
-    }
-    // Without culling, the result is `near` too, because the chords that a particle follows must not depend on culling.
-    if (!world.culls() && margins.boxes_hold) return CandidateSet::near;
-    return query.candidates;
 }
 
 double time_clear_of(const CollisionWorld& world, const QueryMargins& margins, const Path& path, double least) {

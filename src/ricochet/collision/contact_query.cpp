@@ -7,6 +7,49 @@
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
+namespace {
+
+/// Returns true if the path hits a candidate. Otherwise the particle has passed all of them and later contacts are
+/// unknown: the broad phase has to find the triangles near the path.
+bool is_candidate_hit(const ContactCandidates& candidates, NarrowPhase& narrow_phase, ContactScratch& scratch) {
+    for (const std::uint32_t triangle : candidates.triangles()) (void)narrow_phase.test_triangle(triangle);
+    if (!narrow_phase.has_hit()) scratch.triangles.clear();
+    return narrow_phase.has_hit();
+}
+
+/// Tests the triangles near the path and looks ahead if nothing is hit. Planes and shapes must have been tested.
+LookAheadOutcome test_triangles(const CollisionWorld& world, const QueryMargins& margins, const ContactQuery& query,
+                                NarrowPhase& narrow_phase, ContactScratch& scratch) {
+    if (query.candidates.is_known() && is_candidate_hit(query.candidates, narrow_phase, scratch)) {
+        return {{}, CandidateSet::near};
+    }
+    if (query.look_ahead != nullptr && !narrow_phase.has_hit()) {
+        const LookAheadOutcome ahead =
+            test_triangles_and_look_ahead(world, margins, query.path, *query.look_ahead, narrow_phase, scratch);
+        if (ahead.tested) return ahead;
+    }
+    if (world.triangles().empty()) return {{}, CandidateSet::near};
+    return {{}, test_triangles_near(world, margins, query.path, narrow_phase)};
+}
+
+}  // namespace
+
+ContactQueryResult find_first_contact(const SurfaceGeometry& geometry, const ContactQuery& query,
+                                      ContactScratch& scratch) {
+    const CollisionWorld& world = geometry.world();
+    const QueryMargins margins(world, query.path, query.radius, query.beside);
+    scratch.clear();
+    NarrowPhase narrow_phase(geometry, query.path, margins, query.supports, scratch);
+    narrow_phase.test_planes();
+    narrow_phase.test_shapes();
+    const auto [ahead, tested] = test_triangles(world, margins, query, narrow_phase, scratch);
+    ContactQueryResult result{std::nullopt, {geometry, scratch, margins, query.path.c[0], *tested}, ahead};
+    if (narrow_phase.has_hit()) {
+        result.contact = narrow_phase.take_first_contact();
+        result.ahead = {};
+    }
+    return result;
+}
 
 bool NearSurfaces::is_overlapped(SurfaceId surface) const {
     const auto& list = scratch_->overlapped;
@@ -171,49 +214,6 @@ ContactSurface NearSurfaces::facing_surface(SurfaceId surface, const PathPoint& 
 double NearSurfaces::offset_at(const PathPoint& p) const {
     const double own = geometry_.contact_offset(p.position);
     return other_frames_ == nullptr ? own : std::max(own, other_frames_->offset_at(p));
-}
-
-namespace {
-
-/// Returns true if the path hits a candidate. Otherwise the path passes all candidates, and the broad phase has to find
-/// the triangles near it.
-bool is_candidate_hit(const ContactCandidates& candidates, NarrowPhase& narrow_phase, ContactScratch& scratch) {
-    for (const std::uint32_t triangle : candidates.triangles()) (void)narrow_phase.test_triangle(triangle);
-    if (!narrow_phase.has_hit()) scratch.triangles.clear();
-    return narrow_phase.has_hit();
-}
-
-/// Tests the triangles near the path and looks ahead if nothing is hit. Planes and shapes must have been tested.
-LookAheadOutcome test_triangles(const CollisionWorld& world, const QueryMargins& margins, const ContactQuery& query,
-                                NarrowPhase& narrow_phase, ContactScratch& scratch) {
-    if (query.candidates.is_known() && is_candidate_hit(query.candidates, narrow_phase, scratch)) {
-        return {{}, CandidateSet::near};
-    }
-    if (query.look_ahead != nullptr && !narrow_phase.has_hit()) {
-        const LookAheadOutcome ahead = look_ahead(world, margins, query.path, *query.look_ahead, narrow_phase, scratch);
-        if (ahead.tested) return ahead;
-    }
-    if (world.triangles().empty()) return {{}, CandidateSet::near};
-    return {{}, test_triangles_near(world, margins, query.path, narrow_phase)};
-}
-
-}  // namespace
-
-ContactQueryResult find_first_contact(const SurfaceGeometry& geometry, const ContactQuery& query,
-                                      ContactScratch& scratch) {
-    const CollisionWorld& world = geometry.world();
-    const QueryMargins margins(world, query.path, query.radius, query.beside);
-    scratch.clear();
-    NarrowPhase narrow_phase(geometry, query.path, margins, query.supports, scratch);
-    narrow_phase.test_planes();
-    narrow_phase.test_shapes();
-    const auto [ahead, tested] = test_triangles(world, margins, query, narrow_phase, scratch);
-    ContactQueryResult result{std::nullopt, {geometry, scratch, margins, query.path.c[0], *tested}, ahead};
-    if (narrow_phase.has_hit()) {
-        result.contact = narrow_phase.take_first_contact();
-        result.ahead = {};
-    }
-    return result;
 }
 
 }  // namespace ricochet

@@ -321,8 +321,9 @@ bool LookAheadQuery::is_left_behind(double separating_speed) const {
 
 }  // namespace
 
-LookAheadOutcome look_ahead(const CollisionWorld& world, const QueryMargins& margins, const Path& path,
-                            const LookAhead& ahead, NarrowPhase& narrow_phase, ContactScratch& scratch) {
+LookAheadOutcome test_triangles_and_look_ahead(const CollisionWorld& world, const QueryMargins& margins,
+                                               const Path& path, const LookAhead& ahead, NarrowPhase& narrow_phase,
+                                               ContactScratch& scratch) {
     return LookAheadQuery(world, margins, path, ahead, narrow_phase, scratch).run();
 }
 

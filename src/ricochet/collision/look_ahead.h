@@ -70,7 +70,8 @@ struct LookAheadOutcome {
 
 /// Looks ahead, and passes the triangles near the query's own path to the narrow phase. `narrow_phase` must have tested
 /// planes and shapes without a hit.
-[[nodiscard]] LookAheadOutcome look_ahead(const CollisionWorld& world, const QueryMargins& margins, const Path& path,
-                                          const LookAhead& ahead, NarrowPhase& narrow_phase, ContactScratch& scratch);
+[[nodiscard]] LookAheadOutcome test_triangles_and_look_ahead(const CollisionWorld& world, const QueryMargins& margins,
+                                                             const Path& path, const LookAhead& ahead,
+                                                             NarrowPhase& narrow_phase, ContactScratch& scratch);
 
 }  // namespace ricochet

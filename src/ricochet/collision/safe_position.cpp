@@ -8,39 +8,38 @@
 namespace ricochet {
 namespace {
 
-/// Follows a path in certified chords. It halves the path until its chords are free, and stops at a blocked chord that
-/// cannot be halved further.
-class PathFollower {
+/// Certifies a path: halves it until its chords are free, and stops at the first blocked chord.
+class PathCertifier {
 public:
-    PathFollower(const NearSurfaces& near, const Path& path, const PathPoint& start, std::vector<PathPoint>& chain)
-        : near_(near), path_(path), chain_(chain), followed_{start, std::nullopt} {
+    PathCertifier(const NearSurfaces& near, const Path& path, const PathPoint& start, std::vector<PathPoint>& chain)
+        : near_(near), path_(path), chain_(chain), certified_{start, std::nullopt} {
         chain_.assign(1, start);
     }
 
-    bool follow_to(const PathPoint& target, int depth) {
-        const PathPoint& from = followed_.reached;
+    bool certify_to(const PathPoint& target, int depth) {
+        const PathPoint& from = certified_.reached;
         const double time = target.time;
         const double middle = 0.5 * (from.time + time);
         const bool is_shortest = depth == 0 || middle <= from.time || middle >= time;
         if ((is_shortest || near_.covers_chord(path_, from.time, time)) && near_.is_segment_free(from, target)) {
-            followed_.reached = target;
+            certified_.reached = target;
             chain_.push_back(target);
             return true;
         }
         if (is_shortest) {
-            followed_.blocker = near_.segment_blocker(from, target);
+            certified_.blocker = near_.segment_blocker(from, target);
             return false;
         }
-        return follow_to(near_.point_at(path_.position(middle), middle), depth - 1) && follow_to(target, depth - 1);
+        return certify_to(near_.point_at(path_.position(middle), middle), depth - 1) && certify_to(target, depth - 1);
     }
 
-    [[nodiscard]] const CertifiedPath& followed() const { return followed_; }
+    [[nodiscard]] const CertifiedPath& certified() const { return certified_; }
 
 private:
     const NearSurfaces& near_;
     const Path& path_;
     std::vector<PathPoint>& chain_;
-    CertifiedPath followed_;
+    CertifiedPath certified_;
 };
 
 /// The normals along which a particle is moved off the surfaces that it has hit. At most three are used.
@@ -94,8 +93,8 @@ Vec3 position_at(const NearSurfaces& near, const PathPoint& on_path, const Conta
 
 }  // namespace
 
-CertifiedPath follow_path(const NearSurfaces& near, const Path& path, double until, const Vec3& target,
-                          std::vector<PathPoint>& chain) {
+CertifiedPath certify_path(const NearSurfaces& near, const Path& path, double until, const Vec3& target,
+                           std::vector<PathPoint>& chain) {
     // Most paths are free as a whole.
     if (near.other_frames() == nullptr && (path.degree == 1 || near.covers_chord(path, 0.0, until)) &&
         near.is_free(path.c[0], target)) {
@@ -104,10 +103,10 @@ CertifiedPath follow_path(const NearSurfaces& near, const Path& path, double unt
         chain[1] = {target, until, target};
         return {chain[1], std::nullopt};
     }
-    PathFollower follower(near, path, near.start(), chain);
-    (void)follower.follow_to(near.point_at(target, until),
-                             path.degree > 1 || near.other_frames() ? kCertificateDepth : 0);
-    return follower.followed();
+    PathCertifier certifier(near, path, near.start(), chain);
+    (void)certifier.certify_to(near.point_at(target, until),
+                               path.degree > 1 || near.other_frames() ? kCertificateDepth : 0);
+    return certifier.certified();
 }
 
 SafePosition find_safe_position(const NearSurfaces& near, const Path& path, const Contact& contact,
@@ -123,7 +122,7 @@ SafePosition find_safe_position(const NearSurfaces& near, const Path& path, cons
         if (!(length(step) <= longest)) break;
         const Vec3 safe = flush_tiny(position + step);
         if (length(safe - on_path.position) > near.slack()) break;
-        const CertifiedPath followed = follow_path(near, path, contact.time, safe, chain);
+        const CertifiedPath followed = certify_path(near, path, contact.time, safe, chain);
         const std::optional<SurfaceId> obstacle =
             followed.blocker ? followed.blocker : near.overlap_deepened_by(on_path, followed.reached);
         if (!obstacle) return {followed.reached, false, std::nullopt};
@@ -132,10 +131,10 @@ SafePosition find_safe_position(const NearSurfaces& near, const Path& path, cons
         offset *= kContactOffsetWidening;
         ++attempt;
     }
-    PathFollower follower(near, path, near.start(), chain);
+    PathCertifier certifier(near, path, near.start(), chain);
     const PathPoint corrected = near.point_at(position, contact.time);
-    (void)follower.follow_to(near.overlap_deepened_by(on_path, corrected) ? on_path : corrected, kCertificateDepth);
-    const CertifiedPath& followed = follower.followed();
+    (void)certifier.certify_to(near.overlap_deepened_by(on_path, corrected) ? on_path : corrected, kCertificateDepth);
+    const CertifiedPath& followed = certifier.certified();
     return {followed.reached, followed.reached.position == path.c[0], followed.blocker};
 }
 

@@ -20,10 +20,10 @@ struct CertifiedPath {
 };
 
 /// Follows `path` from its start to `target`, its position at time `until`, in certified segments. If the chord is
-/// free, it is the only segment. Otherwise the arc is halved repeatedly, up to the depth kCertificateDepth. `chain` is
-/// replaced by the certified positions in order, the start first.
-[[nodiscard]] CertifiedPath follow_path(const NearSurfaces& near, const Path& path, double until, const Vec3& target,
-                                        std::vector<PathPoint>& chain);
+/// free, it is the only segment. Otherwise the arc is halved, down to kCertificateDepth. `chain` is replaced by the
+/// certified positions in order, the start first.
+[[nodiscard]] CertifiedPath certify_path(const NearSurfaces& near, const Path& path, double until, const Vec3& target,
+                                         std::vector<PathPoint>& chain);
 
 /// A certified position next to a contact.
 struct SafePosition {
@@ -35,7 +35,7 @@ struct SafePosition {
 
 /// Returns a certified position near the contact. It is moved off the surfaces of the contact along their normals, by
 /// contact_offset(), or by more if that fails. If no such position is free, it is the last certified position on the
-/// path. The start of the path is always valid. `chain`: as for follow_path().
+/// path. The start of the path is always valid. `chain`: as for certify_path().
 [[nodiscard]] SafePosition find_safe_position(const NearSurfaces& near, const Path& path, const Contact& contact,
                                               std::vector<PathPoint>& chain);
 

@@ -74,7 +74,7 @@ CertifiedPath follow_to_end(const ParticleStep& step, const NearSurfaces& near, 
     const auto end_of_polygon = [&] { return CertifiedPath{chain.back(), std::nullopt}; };
     if (query.radius == 0.0 && is_polygon_free(step, near, query)) return end_of_polygon();
     const Path& path = query.path;
-    const CertifiedPath followed = follow_path(near, path, path.duration, path.end, chain);
+    const CertifiedPath followed = certify_path(near, path, path.duration, path.end, chain);
     if (!followed.blocker || query.radius == 0.0) return followed;
     std::vector<PathPoint> until_blocked = chain;
     if (is_polygon_free(step, near, query)) return end_of_polygon();

@@ -46,7 +46,7 @@ void Simulation::Impl::move_generation(const ParticleRange& generation, const Ti
     modules.each([&](Module& module) { module.before_generation(generation, step); });
     for (double now = step.begin; now < step.end;) {
         control.stop().poll();
-        const TimeSpan substep = modules.plan(generation, {now, step.end});
+        const TimeSpan substep = modules.plan(generation, {now, step.end});  // only springs and bodies shorten it
         std::vector<BlockRecord> blocks;
         modules.each([&](Module& module) { module.before_substep(generation, substep); });
         move_substep(generation, substep, blocks);
@@ -64,7 +64,7 @@ void Simulation::Impl::move_substep(const ParticleRange& generation, const TimeS
     if (options.response == ResponseKind::rollback && options.rollback.global) {
         mover.move_as_system(generation, substep, blocks);
     } else {
-        mover.move(population.advance(generation, substep, blocks), substep, blocks);
+        mover.move(population.advance(generation, substep, blocks), substep, blocks);  // all but free flights
     }
 }
 

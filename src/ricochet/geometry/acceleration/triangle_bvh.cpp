@@ -81,8 +81,8 @@ std::optional<ClippedRange> clip_to_box(const Vec3& from, const Vec3& to, const 
 struct Query {
     void* context;
     const TriangleClusters* clusters;
-    TriangleBvh::VisitSegment visit = nullptr;    ///< either this one or `query_tube` is set
-    TriangleBvh::VisitTube query_tube = nullptr;  ///< for triangles that the tube may touch
+    TriangleBvh::VisitSegment visit = nullptr;    ///< either this one or `visit_tube` is set
+    TriangleBvh::VisitTube visit_tube = nullptr;  ///< for triangles that the tube may touch
     Tube tube = {};
     double clip_begin = 0.0;        ///< fraction of the segment at which the ray starts
     double ray_per_fraction = 0.0;  ///< ray length of the whole segment
@@ -105,9 +105,22 @@ double Query::visit_cluster(const TriangleCluster& cluster) {
     for (; bits != 0; bits &= bits - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
         limit =
-            std::min(limit, query_tube(context, cluster.triangle[lane], intervals.enter[lane], intervals.leave[lane]));
+            std::min(limit, visit_tube(context, cluster.triangle[lane], intervals.enter[lane], intervals.leave[lane]));
     }
     return limit;
+}
+
+/// Callback of Embree for a cluster whose box the ray of a query hits. It shortens the ray to the narrowed fraction.
+void visit_cluster_on_ray(const RTCIntersectFunctionNArguments* args) {
+    if (args->valid[0] == 0) return;
+    auto& query = *static_cast<Query*>(embree::user_of(args));
+    const double limit = query.visit_cluster((*query.clusters)[args->primID]);
+    if (limit >= query.fraction_limit) return;
+    query.fraction_limit = limit;
+    // Rounded up generously, because a shorter ray must still reach everything up to the limit.
+    const double ray_length = (limit - query.clip_begin) * query.ray_per_fraction;
+    float& tfar = RTCRayN_tfar(RTCRayHitN_RayN(args->rayhit, args->N), args->N, 0);
+    tfar = std::min(tfar, round_up(std::max(ray_length, 0.0) * (1.0 + 0x1p-20)));
 }
 
 /// State of a point query during traversal.
@@ -265,18 +278,7 @@ void TriangleBvh::Impl::build() {
             build.impl->write_bounds(args->primID, *args->bounds_o);
         },
         nullptr);
-    rtcSetGeometryIntersectFunction(geometry, [](const RTCIntersectFunctionNArguments* args) {
-        if (args->valid[0] == 0) return;
-        auto& query = *static_cast<Query*>(embree::user_of(args));
-        const double limit = query.visit_cluster((*query.clusters)[args->primID]);
-        if (limit >= query.fraction_limit) return;
-        query.fraction_limit = limit;
-        // The new length is rounded up generously, because the shortened ray must still reach all triangles up to the
-        // limit.
-        const double ray_length = (limit - query.clip_begin) * query.ray_per_fraction;
-        float& tfar = RTCRayN_tfar(RTCRayHitN_RayN(args->rayhit, args->N), args->N, 0);
-        tfar = std::min(tfar, round_up(std::max(ray_length, 0.0) * (1.0 + 0x1p-20)));
-    });
+    rtcSetGeometryIntersectFunction(geometry, visit_cluster_on_ray);
     {
         Build build{this, {}};
         rtcSetGeometryUserData(geometry, &build);

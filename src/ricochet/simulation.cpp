@@ -110,7 +110,8 @@ TriangleTotals Simulation::triangle_totals(std::size_t i) const {
     TriangleTotals result;
     const SurfaceTotals& totals = impl().recorder.totals();
     if (totals.empty()) return result;
-    // Adds the weights of sleeping particles to the totals for the time of this call. They are removed exactly.
+    // The weights of sleeping particles are added to the totals only during this call. They are removed exactly at the
+    // end.
     impl().mover.sleepers().add_weights(time(), 1.0);
     const ColliderList& list = impl().scene.list();
     for (SurfaceId surface = list.first_surface_of(i); surface < list.first_surface_of(i + 1); ++surface) {

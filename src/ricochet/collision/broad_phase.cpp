@@ -79,7 +79,8 @@ struct PieceQuery {
 
 }  // namespace
 
-// If the boxes do not cover the surroundings of a path, the path is tested against every triangle.
+// If the boxes do not cover the surroundings of a path that may reach triangles, the path is tested against every
+// triangle.
 CandidateSet test_triangles_near(const CollisionWorld& world, const QueryMargins& margins, const Path& path,
                                  NarrowPhase& narrow_phase) {
     PieceQuery query{world, margins, path, narrow_phase};
@@ -88,7 +89,7 @@ CandidateSet test_triangles_near(const CollisionWorld& world, const QueryMargins
     } else if (!world.culls() || may_reach_triangles(world, margins, path, 0.0, path.duration)) {
         query.test_all();
     }
-    // The chords that a particle follows must not depend on culling.
+    // Without culling, the result is `near` too, because the chords that a particle follows must not depend on culling.
     if (!world.culls() && margins.boxes_hold) return CandidateSet::near;
     return query.candidates;
 }

@@ -9,8 +9,8 @@
 namespace ricochet {
 namespace {
 
-/// Returns true if the path hits a candidate. Otherwise the particle has passed all of them and later contacts are
-/// unknown: the broad phase has to find the triangles near the path.
+/// Returns true if the path hits a candidate. Otherwise the path passes all candidates, and the broad phase has to find
+/// the triangles near it.
 bool is_candidate_hit(const ContactCandidates& candidates, NarrowPhase& narrow_phase, ContactScratch& scratch) {
     for (const std::uint32_t triangle : candidates.triangles()) (void)narrow_phase.test_triangle(triangle);
     if (!narrow_phase.has_hit()) scratch.triangles.clear();

@@ -8,7 +8,8 @@
 namespace ricochet {
 namespace {
 
-/// Certifies a path: halves it until its chords are free, and stops at the first blocked chord.
+/// Certifies a path by chords. It halves the path until its chords are free, and stops at a blocked chord that cannot
+/// be halved further.
 class PathCertifier {
 public:
     PathCertifier(const NearSurfaces& near, const Path& path, const PathPoint& start, std::vector<PathPoint>& chain)

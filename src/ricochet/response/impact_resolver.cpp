@@ -100,7 +100,7 @@ void ImpactResolver::apply_bounce(const ContactSurface& surface, Rebound rebound
         bounce_off_body(surface, material, restitution);
         return;
     }
-    // Relative to the surface's material.
+    // The bounce is computed relative to the surface's material.
     const Vec3 carried = surfaces_.velocity_of(surface);
     const bool is_driven = carried != Vec3{};
     Motion motion{particle_.state.velocity, particle_.spin};
@@ -149,7 +149,7 @@ void ImpactResolver::bounce_off_body(const ContactSurface& surface, const Materi
     surfaces_.note_given(body, {impulse, cross(point - mobility.center, impulse)});
 }
 
-/// Removes the rounding by which supporting surfaces are approached. This impulse belongs to no impact.
+/// Removes approach speeds towards supporting surfaces, which are rounding errors. This impulse belongs to no impact.
 void ImpactResolver::settle_on_supports(std::span<const ContactSurface> surfaces) {
     std::array<Vec3, Contact::kMostSurfaces> normals;
     std::array<double, Contact::kMostSurfaces> missing{};
@@ -227,8 +227,8 @@ ImpactSurface ImpactResolver::in_problem(const ContactSurface& surface, Rebound 
             surface.is_support};
 }
 
-/// Returns true if surfaces that close on each other leave the particle no velocity at which it approaches none of
-/// them. Impulses would then grow without bound.
+/// Returns true if, at every velocity, the particle approaches at least one of several closing surfaces. Impulses would
+/// then grow without bound.
 bool ImpactResolver::leave_no_way_out(std::span<const ContactSurface> surfaces, const Vec3& velocity,
                                       double speed) const {
     const auto advances = [&](const ContactSurface& surface) { return surfaces_.surface_normal_speed(surface) > 0.0; };
@@ -243,7 +243,7 @@ void ImpactResolver::apply(const ImpactResult& result, std::span<const ContactSu
                            std::span<const bool> is_met, double scale, int pass) {
     for (std::size_t k = 0; k < met.size(); ++k) {
         if (result.velocity_change[k] == Vec3{}) continue;
-        // Without an approach, an impulse as small as rounding is no hit.
+        // If the surface was not approached, an impulse within rounding does not count as a hit.
         const bool is_hit = is_met[k] || length(result.velocity_change[k]) > kCoulombResidual * scale;
         const Vec3 before = particle_.state.velocity;
         particle_.state.velocity += result.velocity_change[k];

@@ -40,7 +40,7 @@ public:
     /// until the move ends. ends_substep: true for an impact that ends the substep of a dynamic body, false for
     /// surfaces at rest and for an impact that begins contact.
     bool reflect(std::span<const ContactSurface> surfaces, bool ends_substep = true);
-    /// The same without a rebound.
+    /// Does the same without a rebound.
     void land(std::span<const ContactSurface> surfaces);
     /// Clears `is_support` of surfaces that no longer support the particle at an impact. The particle may separate from
     /// them, or their body may return after an impulse in this move.

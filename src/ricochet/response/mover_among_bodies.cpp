@@ -82,8 +82,8 @@ const ContactSurface* first_dynamic(const MovingColliders& bodies, const Contact
     return found == surfaces.end() ? nullptr : &*found;
 }
 
-/// Returns true if the particle comes back to a body whose velocity jump has released it at a speed, hardly faster than
-/// it has left. The end of a step has only divided the contact. slow: slowest rebound, m/s.
+/// Returns true if the particle returns to dynamic bodies after a velocity jump has released it, hardly faster than it
+/// left. Such a contact was only interrupted by the end of a step. slow: slowest rebound, m/s.
 bool lands_again(const MovingColliders& bodies, const SurfaceKinematics& surfaces, const Contact& contact,
                  const std::optional<double>& release_speed, double slow) {
     if (!release_speed || surfaces.approach(contact.all()) > kLandsAgain * std::max(*release_speed, slow)) return false;
@@ -103,7 +103,7 @@ std::optional<Contact> ParticleMover::resolve_contact_with_bodies(const Flight& 
     auto next = begin_or_continue_contact(flight, contact, impact.arriving);
     if (next || particle_.contact.count > 0 || step_.remaining() < before) return next;
     if (!release_speed_) release_speed_ = impact.release_speed;
-    // The body leaves the particle, but until the move's end its path keeps it in the particle's way.
+    // The body recedes from the particle, but until the end of the move its path still blocks the particle.
     if (surfaces().approach_of_paths(contact.all()) > impact.slowest_rebound) return follow_receding_body(contact);
     step_.impact().go_with_paths(contact.all());
     return next;
@@ -126,9 +126,9 @@ ParticleMover::ImpactOnBody ParticleMover::resolve_impact_on_body(const Flight& 
     return impact;
 }
 
-/// Follows a receding dynamic body. A particle that separates from it at near-zero speed would touch it repeatedly with
-/// zero impulse, so it moves with the body until they are apart. contact: replaced by the next contact. Returns false
-/// if the contact is no such touch.
+/// Follows a receding dynamic body. A particle that separates from the body at near-zero speed would touch it
+/// repeatedly with zero impulse. The particle therefore moves with the body until they are apart. contact: replaced by
+/// the next contact. Returns false if the contact is not of this kind.
 bool ParticleMover::follows_receding_body(std::optional<Contact>& contact) {
     if (!step_.has_budget() || !(step_.remaining() > 0.0)) return false;
     if (first_dynamic(rules_.bodies, *contact) == nullptr) return false;
@@ -279,7 +279,7 @@ std::optional<Contact> ParticleMover::begin_in_frame(BodyId body, const Contact&
     });
 }
 
-/// Moves the particle with a dynamic body that it has hit. The body moves away only from the next move on.
+/// Moves the particle with a dynamic body that it has hit. The body starts to recede only in the next move.
 std::optional<Contact> ParticleMover::follow_receding_body(const Contact& contact) {
     const SurfaceId surface = first_dynamic(rules_.bodies, contact)->surface;
     const BodyId body = rules_.bodies.body_of(surface);

@@ -37,8 +37,8 @@ double planned_duration(const ParticleStep& step, bool is_first) {
     return is_planned ? particle.planned->path.duration : step.remaining() + particle.beyond;
 }
 
-/// Returns the horizon of the last flight of a step: as far as its path is known. That requires uniform acceleration
-/// and steps of the run's length.
+/// Returns the look-ahead of the last flight of a step, as far as its path is known. A path is known only under uniform
+/// acceleration and in steps of the run's length.
 std::optional<LookAhead> look_ahead_of(const ParticleStep& step, const Flight& flight) {
     const ResponseRules& rules = step.rules();
     const MovingParticle& particle = step.particle();
@@ -130,8 +130,8 @@ std::optional<Contact> ParticleMover::advance_flight(Flight& flight, bool is_fir
     return contact;
 }
 
-/// Returns false if the budget of bounces is used up, or if moving surfaces close on the particle. In the latter case
-/// many bounces have taken almost no time, and more would not help.
+/// Returns false if the budget of bounces is used up, or if moving surfaces pinch the particle. A particle counts as
+/// pinched if many bounces have taken almost no time. More bounces would not help then.
 bool ParticleMover::may_resolve_contact() {
     if (!step_.has_budget()) return false;
     const std::uint32_t meetings = step_.outcome().meetings();
@@ -141,7 +141,7 @@ bool ParticleMover::may_resolve_contact() {
     return before - step_.remaining() > kPinchedProgress * step_.duration();
 }
 
-/// Resolves a contact: by an impact and, if the rebound is slow, by lasting contact.
+/// Resolves a contact as an impact and, if the rebound is slow, continues with lasting contact.
 std::optional<Contact> ParticleMover::resolve_contact(const Flight& flight, Contact& contact) {
     step_.impact().release(contact);
     if (!meets_moving(contact)) return resolve_contact_at_rest(flight, contact);
@@ -161,7 +161,7 @@ std::optional<Contact> ParticleMover::resolve_contact_at_rest(const Flight& flig
     return begin_or_continue_contact(flight, contact, arriving);
 }
 
-/// Counts and logs an impact, or a contact without one. is_resumed: it only resumes a contact.
+/// Counts and logs an impact, or a contact without an impact. is_resumed: the impact only resumes a contact.
 void ParticleMover::count_impact(const Flight& flight, bool is_impact, bool is_resumed) {
     ++(is_impact && !is_resumed ? step_.outcome().bounces : step_.outcome().touches);
     if (is_impact) release_speed_.reset();
@@ -179,8 +179,8 @@ std::optional<Contact> ParticleMover::begin_or_continue_contact(const Flight& fl
     return next;
 }
 
-/// Continues contact after an impact with the surfaces that have supported the particle, if it does not leave them.
-/// There is no landing. At the end of a step they are kept for the next one.
+/// Continues contact after an impact with the surfaces that have supported the particle, unless it separates from them.
+/// No landing takes place. At the end of a step, the surfaces are stored for the next step.
 std::optional<Contact> ParticleMover::continue_contact(const Flight& flight, const Contact& contact) {
     const Contact supporting = supporting_part(contact);
     if (supporting.count == 0) return std::nullopt;

@@ -54,8 +54,8 @@ private:
         Motion arriving;            ///< the motion before it
         double slowest_rebound;     ///< m/s; slower rebounds are contact
         bool ends_substep = false;  ///< a dynamic body gets another velocity at once, see ImpactResolver::reflect()
-        /// Speed at which a body's velocity jump had released the particle, m/s, if the impact only resumes that
-        /// contact.
+        /// Speed, in m/s, at which a velocity jump of a body had released the particle. Set if the impact only resumes
+        /// that contact.
         std::optional<double> release_speed{};
     };
 

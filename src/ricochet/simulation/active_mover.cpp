@@ -53,8 +53,8 @@ void prefetch_vertices(const ContactCandidates& candidates, const CollisionWorld
     }
 }
 
-// Prefetches in three stages, because neighbours in space are scattered in memory: the data that load() and store()
-// use, then the candidates, then their corners.
+// Prefetches in three stages, because neighbours in space are scattered in memory. The stages fetch the data for load()
+// and store(), the candidate triangles, and the corners of these triangles.
 void prefetch_ahead(const ActiveMover& mover, const QuerySchedule& schedule, std::span<const std::uint32_t> active,
                     std::size_t k) {
     if (k + kPrefetchDistance < active.size()) mover.prefetch(active[k + kPrefetchDistance]);
@@ -67,8 +67,9 @@ void prefetch_ahead(const ActiveMover& mover, const QuerySchedule& schedule, std
     }
 }
 
-/// Lets the core of a sphere in overlap grow with its distance to the surfaces, at the time of its stored position. In
-/// contact the core keeps its radius.
+/// Updates the core of an overlapping sphere, at the time of the stored position. The core grows with the distance of
+/// the surfaces from the centre, and never shrinks. In contact, the core keeps its radius. Without an overlap, the core
+/// is removed.
 void grow_core(ParticleStore& store, const MovingColliders& bodies, std::size_t i, double time) {
     if (!store.cores().has(i) || store.is_fixed(i)) return;
     const Particles& particles = store.particles();
@@ -106,7 +107,7 @@ void schedule_query(const MoverParts& parts, std::size_t i, const MovingParticle
     }
 }
 
-/// Records the passages of particle i past counters, from a stored position in m to its present one.
+/// Records the passages of particle i at counters between the position `from`, in m, and its present position.
 void note_passages(const MoverParts& parts, std::size_t i, const Vec3& from, std::span<const FlownPiece> flown,
                    std::span<const Segment> segments, BlockRecord& record) {
     if (parts.observers.passages == nullptr) return;
@@ -266,7 +267,7 @@ void ActiveMover::write_back(IslandMember& member, const TimeSpan& step, BlockRe
         parts_.schedule.leave_alone(i);
         return;
     }
-    // A sphere that slept on walls alone has pressed on them until now.
+    // A sphere that has slept on surfaces alone has pressed on them until now, so its weight is added.
     if (parts_.store.is_asleep(i)) record.counts.lost_impulses += sleepers_.add_weight(i, life.begin, 1.0);
     const Vec3 from = parts_.store.particles().position[i];
     write_back(i, moving, member.outcome, life.end, {member.lists.hits, {}, member.pair_velocity_change}, record);

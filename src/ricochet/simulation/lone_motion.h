@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: the motion of each sphere in a step as if it met no others.
+/// Private to the simulation: the motion of each sphere in a step, if it met no other spheres.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,8 @@ struct PairTraces {
     std::uint64_t version = 0;            ///< of the sleeping islands; changes with them
 };
 
-/// Answers where a sphere of a range can come in a step if it meets no others. Spheres are given by their numbers in
-/// the range.
+/// Computes the region that a sphere of a range can reach in a step if it meets no other spheres. Spheres are given by
+/// their numbers in the range.
 class LoneMotion {
 public:
     explicit LoneMotion(const PairParts& parts) : parts_(parts) {}
@@ -31,22 +31,23 @@ public:
     [[nodiscard]] double radius(std::uint32_t k) const { return parts_.store.particles().radius[first_ + k]; }
 
     [[nodiscard]] bool is_asleep(std::uint32_t k) const { return traces_->is_asleep[k] != 0; }
-    /// Returns false for a sphere that is pinned, sleeps, or is held by walls alone as long as nothing comes near.
+    /// Returns false for a sphere that is pinned or asleep, or that rests on walls alone while no moving collider comes
+    /// near.
     [[nodiscard]] bool moves(std::uint32_t k) const;
 
-    /// Returns the box of a sphere that may touch walls; empty if it meets no others. Sleepers are in a grid of their
-    /// own.
+    /// Returns the box of a sphere that may touch walls. The box is empty if the sphere cannot meet other spheres. It
+    /// is also empty for sleepers, which are in a separate grid.
     [[nodiscard]] Box3 reachable_box(std::uint32_t k) const;
-    /// Returns true for a sphere that may go farther than its box.
+    /// Returns true for a sphere that may leave its box.
     [[nodiscard]] bool may_leave(const Box3& box) const;
 
     /// Returns the path of a sphere that flies freely, and the box of that path.
     [[nodiscard]] FlownPiece free_path(std::uint32_t k) const;
     [[nodiscard]] Box3 box_of_free(std::uint32_t k) const;
-    /// Returns true if the look-ahead shows that a sphere flies freely. With contact islands results depend on it, so
-    /// the sphere must also be free by its state.
+    /// Returns true if the look-ahead shows that a sphere flies freely. With contact islands, results depend on this
+    /// decision, so the state of the sphere must also show that it is free.
     [[nodiscard]] bool is_known_free(std::uint32_t k) const;
-    /// Returns true if a sphere flies freely. Moves it as if it were alone.
+    /// Returns true if a sphere flies freely. Tests this by a trial move of the sphere alone.
     [[nodiscard]] bool flies_freely(std::uint32_t k, MoveScratch& scratch) const;
 
 private:

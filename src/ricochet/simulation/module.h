@@ -38,8 +38,8 @@ public:
 
     virtual void begin_step(const TimeSpan& /*step*/) {}
     virtual void before_generation(const ParticleRange& /*generation*/, const TimeSpan& /*step*/) {}
-    /// Plans the next substep and returns its end, in s, at most rest.end. rest: time left of the step, or the substep
-    /// that an earlier module has planned. Only SpringsModule and BodiesModule override it.
+    /// Plans the next substep. Returns its end, in s, which is at most rest.end. rest: remaining time of the step, or
+    /// the substep that an earlier module has planned. Only SpringsModule and BodiesModule override this function.
     virtual double plan(const ParticleRange& /*generation*/, const TimeSpan& rest) { return rest.end; }
     virtual void before_substep(const ParticleRange& /*generation*/, const TimeSpan& /*substep*/) {}
     /// Moves the module's own particles. The particles that no module moves have been moved before. blocks: records of

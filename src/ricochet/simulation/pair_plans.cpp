@@ -144,7 +144,7 @@ void PairPlans::ask(std::vector<std::uint32_t> particles) {
                  [&](std::uint32_t k) { return is_free(k); });
 }
 
-/// Returns false if two spheres do not meet, unless others deflect them.
+/// Returns true if two spheres meet when no other sphere deflects them.
 bool PairPlans::do_meet(const NeighbourPair& pair) const {
     if (!overlap(place_of(pair.first), place_of(pair.second))) return false;
     if (!is_free(pair.first) || !is_free(pair.second)) return true;
@@ -167,7 +167,7 @@ bool PairPlans::comes_to(const IslandMember& member, std::uint32_t k) const {
     return first_meeting(member.trajectory, {&trajectory, 1}, distance, 0.0).has_value();
 }
 
-/// Adds pairs with sleepers, which are in a grid of their own.
+/// Adds pairs with sleepers. Sleepers are in a separate grid, which is kept as long as the same spheres sleep.
 void PairPlans::add_pairs_with_sleepers() {
     if (sleepers_.empty()) return;
     std::vector<std::uint32_t> near;

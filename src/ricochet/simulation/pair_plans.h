@@ -20,6 +20,7 @@
 
 namespace ricochet {
 
+/// The declarations of the spheres of a range, and the pairs of spheres that may meet. See the top of this file.
 class PairPlans {
 public:
     explicit PairPlans(const PairParts& parts) : parts_(parts), alone_(parts) {}
@@ -33,7 +34,7 @@ public:
     [[nodiscard]] const std::vector<NeighbourPair>& pairs() const { return pairs_; }
     /// Returns true if the spheres of a pair, given by its number, may meet.
     [[nodiscard]] bool may_meet(std::size_t pair) const { return met_[pair] != 0; }
-    /// Returns true if a sphere is bound, and may go farther than it declares.
+    /// Returns true if a sphere is bound and may leave its declared box.
     [[nodiscard]] bool may_roam(std::uint32_t k) const { return is_bound(k) && alone_.may_leave(boxes_[k]); }
     /// Returns true if a sphere takes part in the step, can be moved, and does not fly freely.
     [[nodiscard]] bool is_bound(std::uint32_t k) const { return !boxes_[k].empty() && alone_.moves(k) && !is_free(k); }

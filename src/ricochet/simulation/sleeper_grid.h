@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: a grid of sleeping spheres, which stays as long as they sleep.
+/// Private to the simulation: a grid of sleeping spheres, kept as long as the same spheres sleep.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace ricochet {
 /// The boxes of sleeping spheres, each given by its number in a range of particles.
 class SleeperGrid {
 public:
-    /// Finds the boxes anew if other spheres sleep. first: first particle of the range.
+    /// Computes the boxes again if the set of sleeping spheres has changed. first: first particle of the range.
     void update(const PairTraces& traces, const Particles& particles, std::size_t first);
 
     [[nodiscard]] bool empty() const { return bounds_.empty(); }

@@ -24,15 +24,15 @@ public:
         : store_(store), schedule_(schedule), recorder_(recorder), observers_(observers), response_(response) {}
 
     /// Adds to the totals of surfaces the impulse of a sleeping particle's weight from its last move until a time, in
-    /// s. sign -1 subtracts exactly the same. Returns the number of impulses that were too large for the totals.
-    /// Several threads may call it for different particles.
+    /// s. A sign of -1 subtracts exactly the impulse that +1 adds. Returns the number of impulses that were too large
+    /// for the totals. Several threads may call this function for different particles.
     std::uint64_t add_weight(std::size_t i, double until, double sign);
-    /// Adds the weights of all sleeping particles in this way.
+    /// Calls add_weight() for all particles.
     void add_weights(double until, double sign);
     /// Adds impulses to the totals of surfaces.
     void press(std::span<const SurfaceHit> hits);
-    /// Wakes a sphere that has slept on others, from a time on, in s. Must be called before the sleeping islands forget
-    /// it.
+    /// Wakes a sphere that has slept on other spheres, at a time, in s. Must be called before the sleeping islands
+    /// remove the sphere.
     void wake(std::size_t i, double time);
     /// Tells the verifier, if there is one, that a particle has kept its position in a step.
     void check(std::size_t i, const TimeSpan& step, BlockRecord& record) const;

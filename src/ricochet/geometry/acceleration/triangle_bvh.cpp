@@ -117,7 +117,8 @@ void visit_cluster_on_ray(const RTCIntersectFunctionNArguments* args) {
     const double limit = query.visit_cluster((*query.clusters)[args->primID]);
     if (limit >= query.fraction_limit) return;
     query.fraction_limit = limit;
-    // Rounded up generously, because a shorter ray must still reach everything up to the limit.
+    // The new length is rounded up generously, because the shortened ray must still reach all triangles up to the
+    // limit.
     const double ray_length = (limit - query.clip_begin) * query.ray_per_fraction;
     float& tfar = RTCRayN_tfar(RTCRayHitN_RayN(args->rayhit, args->N), args->N, 0);
     tfar = std::min(tfar, round_up(std::max(ray_length, 0.0) * (1.0 + 0x1p-20)));

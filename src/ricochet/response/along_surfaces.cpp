@@ -94,29 +94,23 @@ Vec3 along_all(const Vec3& v, std::span<const Vec3> normals) {
     return velocity_of(all);
 }
 
-Vec3 shift_by(std::span<const Vec3> normals, std::span<const double> distances) {
-    std::array<Vec3, 3> basis;
-    std::array<double, 3> part{};
-    std::size_t count = 0;
-    Vec3 shift;
-    for (std::size_t k = 0; k < normals.size() && count < basis.size(); ++k) {
-        Vec3 rest = normals[k];
-        double distance = distances[k];
-        for (int pass = 0; pass < 2; ++pass) {
-            for (std::size_t j = 0; j < count; ++j) {
-                const double along = dot(rest, basis[j]);
-                rest -= along * basis[j];
-                distance -= along * part[j];
-            }
+void ShortestShift::add(const Vec3& normal, double distance) {
+    is_empty_ = false;
+    if (count_ == basis_.size()) return;
+    Vec3 rest = normal;
+    for (int pass = 0; pass < 2; ++pass) {
+        for (std::size_t j = 0; j < count_; ++j) {
+            const double along = dot(rest, basis_[j]);
+            rest -= along * basis_[j];
+            distance -= along * parts_[j];
         }
-        const double left = length(rest);
-        if (!(left > kDependentDirection)) continue;
-        basis[count] = rest / left;
-        part[count] = distance / left;
-        shift += part[count] * basis[count];
-        ++count;
     }
-    return shift;
+    const double left = length(rest);
+    if (!(left > kDependentDirection)) return;
+    basis_[count_] = rest / left;
+    parts_[count_] = distance / left;
+    shift_ += parts_[count_] * basis_[count_];
+    ++count_;
 }
 
 Motion along_surfaces(const Motion& motion, double radius, std::span<const SupportSurface> surfaces,

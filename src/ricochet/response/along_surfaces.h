@@ -58,9 +58,22 @@ using StuckSurfaces = std::array<Stuck, kMostSupports>;
 /// Returns the vector nearest to v that is perpendicular to all normals.
 [[nodiscard]] Vec3 along_all(const Vec3& v, std::span<const Vec3> normals);
 
-/// Returns the shortest displacement, in m, that moves a point along every normal by the distance given for that
-/// normal. Normals that depend on earlier ones are ignored.
-[[nodiscard]] Vec3 shift_by(std::span<const Vec3> normals, std::span<const double> distances);
+/// The shortest displacement, in m, that moves a point along every normal by the distance given for that normal. Also
+/// used for velocities and accelerations. Normals that depend on earlier ones are ignored.
+class ShortestShift {
+public:
+    void add(const Vec3& normal, double distance);
+    /// Returns true if nothing has been added.
+    [[nodiscard]] bool is_empty() const { return is_empty_; }
+    [[nodiscard]] const Vec3& vector() const { return shift_; }
+
+private:
+    std::array<Vec3, 3> basis_;
+    std::array<double, 3> parts_{};  ///< components of the vector along the basis
+    std::size_t count_ = 0;          ///< of the basis
+    bool is_empty_ = true;
+    Vec3 shift_;
+};
 
 /// Returns the motion along all surfaces that differs from the given motion by the least kinetic energy. It does not
 /// slip, roll or spin on a surface where `stuck` prevents that. braked_from: an earlier speed of the motion, in m/s. A

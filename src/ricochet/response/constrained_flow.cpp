@@ -46,15 +46,15 @@ public:
     [[nodiscard]] Vec3 put_on(Vec3 position, double distance) const {
         constexpr int kCorrections = 3;
         for (int k = 0; k < kCorrections; ++k) {
+            ShortestShift shift;
             std::array<Vec3, kMostSupports> normals;
-            std::array<double, kMostSupports> lifts{};
             const auto at = normals_at(position, normals);
             for (std::size_t i = 0; i < surfaces_.size(); ++i) {
                 const SurfaceId surface = surfaces_[i].surface;
                 const double side = dot(geometry_.unit_normal_of(surface, position), at[i]) < 0.0 ? -1.0 : 1.0;
-                lifts[i] = distance - side * geometry_.signed_distance_from(surface, position);
+                shift.add(at[i], distance - side * geometry_.signed_distance_from(surface, position));
             }
-            position += shift_by(at, {lifts.data(), surfaces_.size()});
+            position += shift.vector();
         }
         return flush_tiny(position);
     }
@@ -344,8 +344,7 @@ ConstrainedFlow::Part ConstrainedFlow::until_rim(const Path& path, double reach)
 Path ConstrainedFlow::lifted(Path path) const {
     const CollisionWorld& world = rules_.world;
     const double offset = contact_offset(path.end);
-    SupportSet lifting;
-    std::array<double, kMostSupports> lifts{};
+    ShortestShift shift;
     for (std::size_t k = 0; k < holders_.size(); ++k) {
         const ContactSurface support = manifold_[holders_.point(k)];
         const double side = dot(world.unit_normal_of(support.surface, path.end), support.normal) < 0.0 ? -1.0 : 1.0;
@@ -355,15 +354,12 @@ Path ConstrainedFlow::lifted(Path path) const {
         // height above a large triangle can be pure rounding.
         const bool is_rounding =
             std::fabs(lift) <= 0.5 * kCandidateSlack * max_abs(path.end) && height <= 2.0 * kTouchingOffsets * offset;
-        if (!is_rounding) continue;
-        lifts[lifting.size()] = lift;
-        lifting.add(k, support.normal);
+        if (is_rounding) shift.add(support.normal, lift);
     }
-    if (lifting.empty()) return path;
-    const Vec3 shift = shift_by(lifting.normals(), {lifts.data(), lifting.size()});
-    path.end = flush_tiny(path.end + shift);
+    if (shift.is_empty()) return path;
+    path.end = flush_tiny(path.end + shift.vector());
     // The path may start below the contact offset. It must not lead farther into the surface from there.
-    path.c[1] += shift / path.duration;
+    path.c[1] += shift.vector() / path.duration;
     return path;
 }
 

@@ -215,9 +215,7 @@ ContactFollower::FlatPath ContactFollower::path_along(const FlatInterval& interv
 /// no nearer than that to the other planes. Planes also count a little beyond their rims.
 void ContactFollower::keep_offset(Path& path, const FlatInterval& interval) const {
     const SurfaceGeometry& geometry = step_.geometry();
-    std::array<Vec3, kMostSupports> normals;
-    std::array<double, kMostSupports> lifts{};
-    std::size_t count = 0;
+    ShortestShift shift;
     double largest = 0.0;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         const ContactSurface surface = manifold_[k];
@@ -225,13 +223,12 @@ void ContactFollower::keep_offset(Path& path, const FlatInterval& interval) cons
         const double height = side * geometry.signed_distance_from(surface.surface, path.end) - state().radius;
         const double lift = step_.geometry().contact_offset(path.end) - height;
         if (!interval.is_held_by(k) && lift < 0.0) continue;
-        normals[count] = surface.normal;
-        lifts[count++] = lift;
+        shift.add(surface.normal, lift);
         largest = std::max(largest, std::fabs(lift));
     }
     // Near the origin, a height above a large triangle can be pure rounding.
     if (largest > 0.5 * kCandidateSlack * max_abs(path.end)) return;
-    path.end = flush_tiny(path.end + shift_by({normals.data(), count}, {lifts.data(), count}));
+    path.end = flush_tiny(path.end + shift.vector());
 }
 
 /// Follows one curved contact.

@@ -186,16 +186,12 @@ private:
 
     /// Removes the accelerations into the surfaces. Needed if the solver has found no solution.
     void stay_on_surfaces() {
-        std::array<Vec3, kMostSupports> normals;
-        std::array<double, kMostSupports> lifts{};
-        std::size_t count = 0;
+        ShortestShift lift;
         for (const SupportSurface& surface : surfaces_) {
             const double into = -dot(acceleration_, surface.normal) - surface.curvature;
-            if (!(into > 0.0)) continue;
-            normals[count] = surface.normal;
-            lifts[count++] = into;
+            if (into > 0.0) lift.add(surface.normal, into);
         }
-        acceleration_ += shift_by({normals.data(), count}, {lifts.data(), count});
+        acceleration_ += lift.vector();
     }
 
     /// Returns the equation of a resistance. The resistance opposes the direction of the motion at the start. For

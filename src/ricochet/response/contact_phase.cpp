@@ -301,19 +301,16 @@ bool ContactPhase::lands() const {
 /// Lifts a particle at rest to the contact offset. The offset is the rounding of world coordinates, which may grow
 /// while a body carries the particle.
 void ContactPhase::lift() {
-    std::array<Vec3, kMostSupports> normals;
-    std::array<double, kMostSupports> lifts{};
+    ShortestShift shift;
     const double offset = step_.geometry().contact_offset(state().position);
     bool is_low = false;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
-        normals[k] = manifold_[k].normal;
         const double height =
             step_.geometry().nearest(manifold_[k].surface, state().position).distance - state().radius;
-        lifts[k] = std::max(0.0, offset - height);
+        shift.add(manifold_[k].normal, std::max(0.0, offset - height));
         is_low = is_low || height < 0.5 * offset;
     }
-    if (!is_low) return;
-    state().position += shift_by({normals.data(), manifold_.size()}, {lifts.data(), manifold_.size()});
+    if (is_low) state().position += shift.vector();
 }
 
 /// Returns how long, in s, the particle stays at rest, limited to the rest of the step. Forces in the frame of a moving

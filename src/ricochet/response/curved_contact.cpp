@@ -318,17 +318,14 @@ const CurvedContact::Rate& CurvedContact::rate_at_start() const {
 /// motion onto the directions along these surfaces.
 void CurvedContact::put_on_surfaces(State& state) const {
     for (int k = 0; k < kCorrections; ++k) {
-        std::array<Vec3, kMostSupports> normals;
-        std::array<double, kMostSupports> gaps{};
-        std::size_t count = 0;
+        ShortestShift shift;
         for (std::size_t i = 0; i < materials_.count; ++i) {
             if (!has_load_[i]) continue;
             const CollisionWorld::Nearest touched = surfaces_.nearest(i, state.position);
-            normals[count] = touched.normal;
             const double offset = geometry_.contact_offset(state.position);
-            gaps[count++] = particle_.radius + offset - surfaces_.overlap(i) - touched.distance;
+            shift.add(touched.normal, particle_.radius + offset - surfaces_.overlap(i) - touched.distance);
         }
-        state.position += shift_by({normals.data(), count}, {gaps.data(), count});
+        state.position += shift.vector();
     }
     const SupportList there = supports(state);
     SupportList supporting_ones;

@@ -102,22 +102,18 @@ private:
     /// Removes the approach to supporting surfaces. The normal speed there is a rounding error, and the factor 1 + e on
     /// the impulses can turn it into an approach.
     void keep_supported_only(ImpactResult& result) const {
-        std::array<Vec3, ImpactResult::kMostSurfaces> normals;
-        std::array<double, ImpactResult::kMostSurfaces> lifts{};
-        std::size_t count = 0;
+        ShortestShift shift;
         std::size_t last = 0;
         for (std::size_t c = 0; c < count_; ++c) {
             const ImpactSurface& surface = surfaces_[surface_of_[c]];
             const double approach = surface.advance - dot(result.after.velocity, surface.normal);
             if (!surface.is_support || !(approach > 0.0)) continue;
-            normals[count] = surface.normal;
-            lifts[count++] = approach;
+            shift.add(surface.normal, approach);
             last = surface_of_[c];
         }
-        if (count == 0) return;
-        const Vec3 shift = shift_by({normals.data(), count}, {lifts.data(), count});
-        result.after.velocity += shift;
-        result.velocity_change[last] += shift;
+        if (shift.is_empty()) return;
+        result.after.velocity += shift.vector();
+        result.velocity_change[last] += shift.vector();
     }
 
     /// Returns the solution with full friction, if it is found quickly.

@@ -151,21 +151,17 @@ void ImpactResolver::bounce_off_body(const ContactSurface& surface, const Materi
 
 /// Removes approach speeds towards supporting surfaces, which are rounding errors. This impulse belongs to no impact.
 void ImpactResolver::settle_on_supports(std::span<const ContactSurface> surfaces) {
-    std::array<Vec3, Contact::kMostSurfaces> normals;
-    std::array<double, Contact::kMostSurfaces> missing{};
-    std::size_t count = 0;
+    ShortestShift change;
     const ContactSurface* support = nullptr;
     for (const ContactSurface& surface : surfaces) {
         const double approach = -surfaces_.separation_speed(surface);
-        if (!surface.is_support || !(approach > 0.0) || count == normals.size()) continue;
-        normals[count] = surface.normal;
-        missing[count++] = approach;
+        if (!surface.is_support || !(approach > 0.0)) continue;
+        change.add(surface.normal, approach);
         if (support == nullptr) support = &surface;
     }
     if (support == nullptr) return;
-    const Vec3 change = shift_by(std::span(normals).first(count), std::span(missing).first(count));
-    particle_.state.velocity += change;
-    ledger_.record_impulse(support->surface, change, false, Vec3{});
+    particle_.state.velocity += change.vector();
+    ledger_.record_impulse(support->surface, change.vector(), false, Vec3{});
 }
 
 void ImpactResolver::shatter_by(const Vec3& velocity_change) {

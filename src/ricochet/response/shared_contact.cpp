@@ -67,14 +67,14 @@ double SharedContact::fastest() const {
 SharedContact::SupportKind SharedContact::settle(double duration) {
     const Vec3 leaving = state().velocity;
     for (;;) {
-        std::array<Vec3, kMostSupports> normals;
+        ShortestShift shift;
         std::array<double, kMostSupports> departures{};
         const std::size_t before = surfaces_.size();
         for (std::size_t k = 0; k < before; ++k) {
-            normals[k] = surfaces_[k].surface.normal;
             departures[k] = -surfaces_.separation_speed(surfaces_[k]);
+            shift.add(surfaces_[k].surface.normal, departures[k]);
         }
-        state().velocity += shift_by({normals.data(), before}, {departures.data(), before});
+        state().velocity += shift.vector();
         const SupportKind kind = plan(duration);
         std::size_t left = 0;
         const auto is_kept = [&](std::size_t k) { return interval_.reaction[k] != Vec3{} || !(departures[k] < 0.0); };
@@ -108,13 +108,11 @@ StuckSurfaces SharedContact::sticking(const Motion& motion, std::span<const Supp
 /// one frame alone support the particle.
 SharedContact::SupportKind SharedContact::plan(double duration) {
     const std::size_t count = surfaces_.size();
-    std::array<Vec3, kMostSupports> normals;
-    std::array<double, kMostSupports> advances{};
-    for (std::size_t k = 0; k < count; ++k) {
-        normals[k] = surfaces_[k].surface.normal;
-        advances[k] = dot(surfaces_[k].velocity, normals[k]);
+    ShortestShift shift;
+    for (const SharedSurface& touched : surfaces_.all()) {
+        shift.add(touched.surface.normal, dot(touched.velocity, touched.surface.normal));
     }
-    shift_ = shift_by({normals.data(), count}, {advances.data(), count});
+    shift_ = shift.vector();
     std::array<SupportSurface, kMostSupports> constraints;
     for (std::size_t k = 0; k < count; ++k) constraints[k] = surfaces_.constraint(surfaces_[k], shift_);
     const std::span<const SupportSurface> all(constraints.data(), count);
@@ -141,17 +139,14 @@ SharedContact::SupportKind SharedContact::plan(double duration) {
 /// the others.
 Vec3 SharedContact::kept_off(Vec3 end, double time) const {
     for (int pass = 0; pass < kCorrections; ++pass) {
-        std::array<Vec3, kMostSupports> normals;
-        std::array<double, kMostSupports> lifts{};
-        std::size_t count = 0;
+        ShortestShift shift;
         for (std::size_t k = 0; k < surfaces_.size(); ++k) {
             const SharedSurfaces::Height height = surfaces_.height_above(surfaces_[k], end, time);
             const double missing = state().radius + height.offset - height.above;
             if (interval_.reaction[k] == Vec3{} && !(missing > 0.0)) continue;
-            normals[count] = height.normal;
-            lifts[count++] = missing;
+            shift.add(height.normal, missing);
         }
-        end += shift_by({normals.data(), count}, {lifts.data(), count});
+        end += shift.vector();
     }
     return flush_tiny(end);
 }
@@ -171,10 +166,8 @@ void SharedContact::lift() {
 /// lie behind surfaces that turn, where it would be stopped. The lift turns with the surfaces, and is the same for all:
 /// a lift off one surface alone would lead into another.
 void SharedContact::lift_middle(Path& path) const {
-    std::array<Vec3, kMostSupports> normals;
-    std::array<Vec3, kMostSupports> last_normals;
-    std::array<double, kMostSupports> lifts{};
-    std::size_t count = 0;
+    ShortestShift at_start;
+    ShortestShift at_end;
     bool is_behind = false;
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
         const auto height_at = [&](double time) {
@@ -189,13 +182,12 @@ void SharedContact::lift_middle(Path& path) const {
         if (behind <= (surfaces_.deforms(surfaces_[k]) ? 0.0 : 0.5 * state().radius)) behind = 0.0;
         if (interval_.reaction[k] == Vec3{} && behind == 0.0) continue;
         is_behind = is_behind || behind > 0.0;
-        normals[count] = height_at(0.0).normal;
-        last_normals[count] = height_at(path.duration).normal;
-        lifts[count++] = behind;
+        at_start.add(height_at(0.0).normal, behind);
+        at_end.add(height_at(path.duration).normal, behind);
     }
     if (!is_behind) return;
-    const Vec3 first = (4.0 / path.duration) * shift_by({normals.data(), count}, {lifts.data(), count});
-    const Vec3 last = (4.0 / path.duration) * shift_by({last_normals.data(), count}, {lifts.data(), count});
+    const Vec3 first = (4.0 / path.duration) * at_start.vector();
+    const Vec3 last = (4.0 / path.duration) * at_end.vector();
     const Vec3 turn = last - first;
     path.c[1] += first;
     path.c[2] += (turn - first) / path.duration;

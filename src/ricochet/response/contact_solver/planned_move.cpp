@@ -244,16 +244,14 @@ bool PlannedMove::touches(SurfaceId surface) const {
 /// Returns a velocity without its components into the surfaces in met_. If they block every direction, returns the
 /// velocity of one of these surfaces.
 Vec3 PlannedMove::along_those_met(const Vec3& velocity) const {
-    std::vector<Vec3> normals;
-    std::vector<double> missing;
-    Vec3 left = velocity;
-    while (const ContactSurface* const surface = most_approached(left)) {
-        if (normals.size() == kMostSupports) return velocity_of(*surface);
-        normals.push_back(surface->normal);
-        missing.push_back(-dot(velocity - velocity_of(*surface), surface->normal));
-        left = velocity + shift_by(normals, missing);
+    ShortestShift shift;
+    for (std::size_t k = 0;; ++k) {
+        const Vec3 left = shift.is_empty() ? velocity : velocity + shift.vector();
+        const ContactSurface* const surface = most_approached(left);
+        if (surface == nullptr) return left;
+        if (k == kMostSupports) return velocity_of(*surface);
+        shift.add(surface->normal, -dot(velocity - velocity_of(*surface), surface->normal));
     }
-    return left;
 }
 
 /// Returns the surface in met_ that a velocity leads into fastest, beyond rounding, or null if it leads into none.

@@ -31,13 +31,17 @@ Vec3 facing_normal(const Vec3& normal, int side, const Vec3& v) {
     return speed > 0.0 ? v / -speed : normal;
 }
 
+double query_slack(double largest, double radius) {
+    return kCandidateSlack * (largest + radius) + kLargestContactOffsetUlps * kSmallestContactOffset;
+}
+
 QueryMargins::QueryMargins(const CollisionWorld& world, const Path& path, double radius_in, double beside_in)
     : bvh(&world.bvh_for(radius_in)),
       radius(radius_in),
       beside(beside_in),
       tolerance(0.0),
       largest(largest_coordinate(path)),
-      slack(kCandidateSlack * (largest + radius) + kLargestContactOffsetUlps * kSmallestContactOffset + beside),
+      slack(query_slack(largest, radius) + beside),
       curvature(std::max(0.0, bvh->margin() - radius - 2.0 * beside)),
       boxes_hold(bvh->margin() - radius >= 2.0 * beside && kPathRounding * largest <= bvh->slack()) {
     if (radius > 0.0) tolerance = sphere_tolerance(radius, max_abs(path.c[0]));

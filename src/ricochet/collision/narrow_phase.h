@@ -18,6 +18,10 @@ namespace ricochet {
 /// terms.
 [[nodiscard]] double largest_coordinate(const Path& path);
 
+/// Returns the distance, in m, from a path within which a query certifies positions. largest: largest coordinate of the
+/// path, in m.
+[[nodiscard]] double query_slack(double largest, double radius);
+
 /// Margins of a query: the distances from a path within which it considers surfaces.
 struct QueryMargins {
     QueryMargins(const CollisionWorld& world, const Path& path, double radius_in, double beside_in = 0.0);

@@ -5,6 +5,7 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/carried_particle.h"
+#include "ricochet/response/clear_flight.h"
 #include "ricochet/response/contact_with_bodies.h"
 #include "ricochet/response/exact.h"
 #include "ricochet/response/path_motion.h"
@@ -70,6 +71,7 @@ std::optional<LookAhead> look_ahead_of(const ParticleStep& step, const Flight& f
 ExactResponse::ExactResponse(const ResponseRules& rules) : Response(rules), frame_rules_(rules_) {}
 
 MoveOutcome ExactResponse::move(MovingParticle& particle, double duration, MoveScratch& scratch) const {
+    if (const auto clear = fly_clear(rules_, particle, duration, scratch)) return *clear;
     return ParticleMover(rules_, frame_rules_, particle, duration, scratch).run();
 }
 

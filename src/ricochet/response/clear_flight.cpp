@@ -1,0 +1,55 @@
+#include "ricochet/response/clear_flight.h"
+
+#include "ricochet/collision/clear_path.h"
+#include "ricochet/response/impact_resolver.h"
+#include "ricochet/response/motion_log.h"
+
+namespace ricochet {
+namespace {
+
+/// Returns true if the particle is in free flight by itself, and a contact query would serve this step alone.
+bool may_fly_clear(const ResponseRules& rules, const MovingParticle& particle) {
+    return rules.bodies.empty() && rules.world.culls() && !rules.forces.is_uniform() && particle.beyond == 0.0 &&
+           particle.contact == ContactState{} && is_finite(particle.state.position);
+}
+
+/// Records the flight in the lists that the caller has asked for. before: the particle at the start.
+void record(const ResponseRules& rules, const MovingParticle& before, const MovingParticle& after, const Flight& flight,
+            MoveScratch& scratch) {
+    const Path& path = flight.path;
+    if (scratch.record_segments) scratch.segments.push_back({path.c[0], path.end, before.state.time, 0.0, 0.0});
+    if (scratch.record_flown) {
+        scratch.flown.push_back(
+            {path, before.state.time, path.duration, before.state.velocity, after.state.velocity, true});
+    }
+    if (!scratch.record_motions) return;
+    MovingParticle moved = before;
+    MotionLog log(rules, moved, scratch, ReferenceFrame::world());
+    moved.state = after.state;
+    log.note_flight();
+}
+
+}  // namespace
+
+std::optional<MoveOutcome> fly_clear(const ResponseRules& rules, MovingParticle& particle, double duration,
+                                     MoveScratch& scratch) {
+    if (!may_fly_clear(rules, particle)) return std::nullopt;
+    ForceInput& state = particle.state;
+    const double room = room_beside_triangles(rules.world, state.position, state.radius);
+    // Saves the flight of a particle that is too near anyway.
+    if (!(duration * length(state.velocity) < room)) return std::nullopt;
+    const Flight flight = first_flight(rules, particle, duration);
+    if (flight.path.duration != duration || !can_be_followed(flight.path)) return std::nullopt;
+    if (!is_path_clear(rules.world, flight.path, state.radius, room)) return std::nullopt;
+    const bool is_recorded = scratch.record_segments || scratch.record_flown || scratch.record_motions;
+    const std::optional<MovingParticle> before = is_recorded ? std::optional(particle) : std::nullopt;
+    state.position = flight.path.end;
+    state.velocity = flight.end_velocity;
+    state.time += duration;
+    if (before) record(rules, *before, particle, flight, scratch);
+    MoveOutcome outcome;
+    outcome.is_coarse = flight.is_coarse;
+    return outcome;
+}
+
+}  // namespace ricochet

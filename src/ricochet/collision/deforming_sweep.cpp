@@ -86,7 +86,7 @@ std::optional<DeformingSweep::Hit> DeformingSweep::meet(SurfaceId surface, const
             from = kShortLeave;
     } else if (distance <= radius) {
         if (const auto hit = hit_at(surface, triangle, {})) return hit;
-        radius = kNearerLink * distance;
+        radius = kNearerFraction * distance;
     }
     std::optional<Hit> hit;
     static_cast<void>(first_meeting(path_, radius, triangle, from, [&](const Meeting& meeting) {

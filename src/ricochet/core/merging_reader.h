@@ -62,7 +62,7 @@ public:
         for (Source& source : sources_) {
             std::uint64_t count = 0;
             read(source, count);
-            if (count != source.count * width) complain();
+            if (count != source.count * width) throw_mismatch();
             parts.push_back(bytes_of(source, count * sizeof(T)));
         }
         values.resize(size_ * width);
@@ -95,7 +95,7 @@ public:
             read(source, part);
             count += part;
         }
-        if (count != expected) complain();
+        if (count != expected) throw_mismatch();
         list.clear();
         const std::uint64_t width = width_of(expected);
         for (const Run& run : runs_) {
@@ -117,7 +117,7 @@ private:
         std::size_t count = 0;
     };
 
-    [[noreturn]] static void complain() { throw RunError("the ranks have sent lists that do not fit together"); }
+    [[noreturn]] static void throw_mismatch() { throw RunError("the ranks have sent lists that do not fit together"); }
 
     template <class T>
     static void read(Source& source, T& value) {
@@ -127,7 +127,7 @@ private:
     static void read_list(Source& source, std::vector<T>& values) {
         std::uint64_t count = 0;
         read(source, count);
-        if (count > source.bytes.size()) complain();
+        if (count > source.bytes.size()) throw_mismatch();
         values.resize(count);
         read_bytes(source, std::as_writable_bytes(std::span(values)));
     }
@@ -136,7 +136,7 @@ private:
         if (!into.empty()) std::memcpy(into.data(), from.data(), into.size());
     }
     static std::span<const std::byte> bytes_of(Source& source, std::size_t size) {
-        if (size > source.bytes.size() - source.at) complain();
+        if (size > source.bytes.size() - source.at) throw_mismatch();
         const std::span<const std::byte> bytes = source.bytes.subspan(source.at, size);
         source.at += size;
         return bytes;

@@ -73,12 +73,12 @@ int checked_threads(int threads) {
 thread_local const std::function<void()>* loop_stop = nullptr;
 
 /// Scope in which the thread of a block uses the LoopStop function of the thread that began the loop.
-class HandedOn {
+class LoopStopScope {
 public:
-    explicit HandedOn(const std::function<void()>* stop) : own_(std::exchange(loop_stop, stop)) {}
-    ~HandedOn() { loop_stop = own_; }
-    HandedOn(const HandedOn&) = delete;
-    HandedOn& operator=(const HandedOn&) = delete;
+    explicit LoopStopScope(const std::function<void()>* stop) : own_(std::exchange(loop_stop, stop)) {}
+    ~LoopStopScope() { loop_stop = own_; }
+    LoopStopScope(const LoopStopScope&) = delete;
+    LoopStopScope& operator=(const LoopStopScope&) = delete;
 
 private:
     const std::function<void()>* own_;
@@ -116,7 +116,7 @@ void parallel_for_blocks(std::size_t count, std::size_t block_size,
     const std::function<void()>* const stop = loop_stop;
     const auto run_block = [&](std::size_t block) {
         const LoopSync::Iteration iteration(sync);
-        const HandedOn handed_on(stop);
+        const LoopStopScope scope(stop);
         poll_loop_stop();
         // Bodies use thread-local working memory. While a body waits for its own tasks, its thread must not start
         // another body of this loop or of an enclosing one.

@@ -28,7 +28,7 @@ Character character_of(std::string_view text) {
 }
 
 /// Returns true for control characters (C0 and C1) and for characters that change the direction of text.
-bool is_obeyed(char32_t code) {
+bool is_control_character(char32_t code) {
     const auto between = [&](char32_t first, char32_t last) { return code >= first && code <= last; };
     return code < 0x20 || between(0x7F, 0x9F) || code == 0x061C || between(0x200E, 0x200F) || between(0x2028, 0x202E) ||
            between(0x2066, 0x2069);
@@ -51,7 +51,7 @@ std::string printable(std::string_view text, std::size_t longest) {
         const Character character = character_of(text.substr(at));
         if (character.length == 0) {
             result += escape_of(static_cast<unsigned char>(text[at]));
-        } else if (is_obeyed(character.code)) {
+        } else if (is_control_character(character.code)) {
             result += escape_of(character.code);
         } else {
             result += text.substr(at, character.length);

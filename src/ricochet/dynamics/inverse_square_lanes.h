@@ -49,7 +49,7 @@ public:
                 const double square = dx * dx + dy * dy + dz * dz;
                 const double u = square + softening;
                 const double pull = w / (u * std::sqrt(u));
-                const double g = square > kSamePlace * kSamePlace ? pull : 0.0;
+                const double g = square > kCoincidentDistance * kCoincidentDistance ? pull : 0.0;
                 gx_[l] += g * dx;
                 gy_[l] += g * dy;
                 gz_[l] += g * dz;
@@ -104,7 +104,7 @@ inline double point_potential(const Vec3& at, std::span<const Vec3> positions, s
     double sum = 0.0;
     for (std::size_t j = 0; j < positions.size(); ++j) {
         const double u = length_squared(positions[j] - at) + softening;
-        if (u > kSamePlace * kSamePlace) sum += weights[j] / std::sqrt(u);
+        if (u > kCoincidentDistance * kCoincidentDistance) sum += weights[j] / std::sqrt(u);
     }
     return sum;
 }

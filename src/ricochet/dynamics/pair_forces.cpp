@@ -114,7 +114,7 @@ private:
         const Vec3 d = particles.positions[i] - particles.positions[j];
         const double reach = law_.cutoff() + (between_surfaces_ ? particles.radii[i] + particles.radii[j] : 0.0);
         const double square = length_squared(d);
-        if (!(square < reach * reach) || square < kSamePlace * kSamePlace) return false;
+        if (!(square < reach * reach) || square < kCoincidentDistance * kCoincidentDistance) return false;
         state.distance = std::sqrt(square);
         state.direction = d / state.distance;
         state.relative_velocity = particles.velocities[i] - particles.velocities[j];

@@ -166,7 +166,7 @@ std::optional<MovingContact> contact_from_overlap(const MovingPoint& point, doub
     }
     const double speed = length(relative);
     if (dot(nearest.offset, relative) < -kMinApproach * distance * speed) return at_start;
-    const double nearer_still = kNearerLink * distance - kMinApproach * speed;
+    const double nearer_still = kNearerFraction * distance - kMinApproach * speed;
     std::optional<MovingContact> sunk;
     if (nearer_still > 0.0) sunk = first_contact(point, nearer_still, triangle);
     const auto back = contact_after_leaving(point, radius, triangle);

@@ -180,7 +180,7 @@ private:
     /// Sets the accelerations from a change of the motion. A change within rounding does not set a resting particle in
     /// motion.
     void accept(const MotionVector& change) {
-        if (motion_.velocity == Vec3{} && length(acceleration_) <= kHoldRounding * scale()) acceleration_ = {};
+        if (motion_.velocity == Vec3{} && length(acceleration_) <= kSupportRounding * scale()) acceleration_ = {};
         if (is_sphere()) spin_acceleration_ = (kTurning / radius_) * turning_of(change);
     }
 
@@ -229,7 +229,7 @@ private:
     /// Returns true if the particle rests: its centre does not move, and nothing changes its motion.
     [[nodiscard]] bool rests() const {
         if (motion_.velocity != Vec3{}) return false;
-        return length(acceleration_) + radius_ * length(spin_acceleration_) <= kHoldRounding * scale();
+        return length(acceleration_) + radius_ * length(spin_acceleration_) <= kSupportRounding * scale();
     }
 
     /// Returns the largest contribution to the accelerations, in m/s^2.
@@ -347,13 +347,13 @@ private:
             const Vec3 change = change_of(r);
             bool& sticks = is_stuck(interval.stuck[r.surface], r.kind);
             if (r.speed == 0.0) {
-                sticks = length(change) <= kHoldRounding * scale();
+                sticks = length(change) <= kSupportRounding * scale();
                 continue;
             }
             const double left = length(r.rate + interval.duration * change);
             // On a slope near the angle of friction, the braking force is a small difference of large forces. Its
             // rounding error is therefore that of the large forces.
-            const double rounding = kHoldRounding * scale() * interval.duration;
+            const double rounding = kSupportRounding * scale() * interval.duration;
             const bool is_soon_over = left < kMostHeadingTurn * r.speed &&
                                       (left <= rounding || left * interval.duration <= grip_.negligible_path);
             sticks = left <= kStopRounding * r.speed || is_soon_over;

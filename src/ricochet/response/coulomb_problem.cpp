@@ -141,7 +141,7 @@ void CoulombProblem::look_elsewhere() {
 }
 
 CoulombProblem::Reached CoulombProblem::Reached::next(double value, double largest) const {
-    return {value, largest, value * largest >= kSteadyGiving * compliance * force};
+    return {value, largest, value * largest >= kDivergingRatio * compliance * force};
 }
 
 /// Returns true if forces diverge as contacts become stiffer: the contacts yield as much as with lower stiffness. This
@@ -151,7 +151,7 @@ bool CoulombProblem::runs_away(const Reached& reached, double compliance, bool i
     const double giving = reached.compliance * reached.force;
     if (!is_found) return reached.is_steady && giving > kLostForce * compliance;
     const double force = equations_.largest_force();
-    return force > kRunawayForce && force * compliance >= kSteadyGiving * giving;
+    return force > kRunawayForce && force * compliance >= kDivergingRatio * giving;
 }
 
 /// Makes stiff contacts rigid by proximal point iterations. Each iteration moves the compliance's anchor to the current

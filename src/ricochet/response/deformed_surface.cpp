@@ -44,7 +44,7 @@ bool is_point_over(const DeformedTriangle& triangle, double offset, const Vec3& 
     const Vec3 slip = velocity - dot(velocity, normal) * normal;
     const double speed = length(slip);
     if (speed <= kStandingSlip * separation_speed) return true;
-    const Vec3 next = p + (kRimLookOffsets * offset / speed) * slip;
+    const Vec3 next = p + (kRimPathOffsets * offset / speed) * slip;
     return beyond_rim(triangle, next) <= beyond + kOverRim * offset;
 }
 

@@ -86,7 +86,7 @@ inline constexpr double kEnergyGain = 0x1p-49;
 /// Acceleration, as a fraction of the applied acceleration, up to which a supported particle stays at rest. Reason: the
 /// limit is about a hundred times the rounding of the solved equations. Smaller: particles at rest accelerate at 1e-16
 /// of gravity. Larger: a particle stays at rest on a slope slightly steeper than the angle of friction.
-inline constexpr double kHoldRounding = 0x1p-40;
+inline constexpr double kSupportRounding = 0x1p-40;
 
 /// Smallest length of a unit vector's component perpendicular to other vectors for which the vector counts as
 /// independent of them. Reason: a smaller component consists of rounding. Its direction would remove a motion that no
@@ -173,7 +173,7 @@ inline constexpr double kStandingSlip = 1e-10;
 /// Length of the path, in contact offsets, that decides whether a point on the rim of a deforming triangle moves off
 /// the rim. Reason: over a shorter path, rounding would decide. Smaller: rounding makes points leave the rim. Larger:
 /// the rim counts as straight over a longer path.
-inline constexpr double kRimLookOffsets = 1024.0;
+inline constexpr double kRimPathOffsets = 1024.0;
 
 /// Duration by which a point continues its path after it has left a deforming triangle, as a fraction of the path's
 /// duration. Reason: the point is then certainly beyond the rim. Smaller: the same triangle is found again. Larger: the

@@ -74,7 +74,7 @@ inline constexpr double kLostForce = 1e5;
 /// Smallest ratio of the displacements of compliant contacts in successive stages for which the forces count as
 /// diverging. Reason: if forces are bounded, the displacements decrease with the compliance. Smaller: bounded forces
 /// count as diverging. Larger: diverging problems take more time.
-inline constexpr double kSteadyGiving = 0.5;
+inline constexpr double kDivergingRatio = 0.5;
 
 /// Relative difference between the changes of the forces in sweep n and in sweep 2 n, below which the forces grow
 /// steadily and count as diverging. Reason: such forces would not converge in ten thousand sweeps. Smaller: diverging

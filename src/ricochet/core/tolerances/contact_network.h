@@ -105,7 +105,7 @@ inline constexpr double kDirectShare = 0.25;
 /// the impulse that would stop the approach at this contact alone. The restitution 0 of a support does not lower the
 /// restitution of connected impacts. Smaller: a floor absorbs impacts between spheres that roll on it. Larger: impacts
 /// keep energy that such a contact should absorb.
-inline constexpr double kHoldsOnly = 1.5;
+inline constexpr double kSupportImpulseRatio = 1.5;
 
 /// Largest number of surfaces that a planned path may hit in one step. After that the particle stays at the position
 /// that it has reached. Smaller: particles in corners lose the rest of their step. Larger: particles in corners take

@@ -49,7 +49,7 @@ inline constexpr double kStateRounding = 0x1p-54;
 /// Distance, in m, below which two particles count as coincident. No direction from one to the other is then defined,
 /// so the forces between them are zero. Reason: the third power of this distance is still a normal number, with some
 /// margin. Smaller (from 1e-102 on): the inverse third power overflows. Larger: no effect on real scenes.
-inline constexpr double kSamePlace = 1e-100;
+inline constexpr double kCoincidentDistance = 1e-100;
 
 /// Largest speed, in m/s, to which forces may accelerate a particle: the speed of light (exact by the definition of the
 /// metre). Reason: a higher speed means that the forces are wrong or that the step is too long for them, so the run

@@ -53,7 +53,7 @@ inline constexpr double kShortLeave = 0x1p-20;
 /// Fraction of the distance to a deforming triangle below which a sphere in overlap counts as nearer. Reason: the
 /// difference exceeds the rounding of the distance. Smaller: such a sphere sinks in further before it stops. Larger:
 /// rounding counts as an impact.
-inline constexpr double kNearerLink = 1.0 - 0x1p-40;
+inline constexpr double kNearerFraction = 1.0 - 0x1p-40;
 
 /// Smallest gap to a moving triangle that does not count as contact, as a fraction of the contact offset. Reason: the
 /// gap of a safe position is a whole offset, and rounding reduces it by less than three quarters. Smaller: the search

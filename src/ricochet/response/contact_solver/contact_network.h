@@ -20,8 +20,8 @@
 /// Restitution: contacts with P_n > 0 join spheres to connected impacts. A contact that had an impulse in the last step
 /// is not a new impact, so its restitution is 0. A connected impact has one restitution e, the smallest of its
 /// approaching contacts. This minimum ignores a contact of restitution 0 whose impulse only supports a body
-/// (kHoldsOnly). The contacts of the impact then separate with u_n >= -e u_n-, where u_n- is the value before the
-/// impulses. A separate restitution for each contact would multiply energy.
+/// (kSupportImpulseRatio). The contacts of the impact then separate with u_n >= -e u_n-, where u_n- is the value before
+/// the impulses. A separate restitution for each contact would multiply energy.
 ///
 /// The impulses never add kinetic energy in the frame of the walls, apart from the work that separates overlaps. If the
 /// rebounds of a connected impact would add energy, the rebounds are suppressed.

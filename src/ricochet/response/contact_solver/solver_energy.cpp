@@ -22,7 +22,7 @@ std::vector<double> restitutions(const ConnectedImpacts& impacts, std::span<cons
         if (!(separation < 0.0)) continue;
         const double own = all_own[i];
         if (own == 0.0 &&
-            row.impulse.normal * inverse_mass_of(before[row.a], before[row.b]) <= -kHoldsOnly * separation)
+            row.impulse.normal * inverse_mass_of(before[row.a], before[row.b]) <= -kSupportImpulseRatio * separation)
             continue;
         double& e = least[impacts.of(row)];
         e = std::min(e, own);

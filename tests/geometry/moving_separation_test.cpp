@@ -63,7 +63,9 @@ TEST(MovingSeparation, PassesAlongADirectionOnlyPairsWithoutContact) {
                                        : hermite_path(from, in_cube(random), to, in_cube(random), 1.0);
         const double radius = k % 4 < 2 ? 0.0 : 0.2 * random.uniform();
         const bool passes = pass_along_direction(path, radius, triangle);
-        const bool meets = first_meeting(path, radius, triangle, 0.0, [](const Meeting&) { return true; }).has_value();
+        const bool meets = first_possible_contact(path, radius, triangle, 0.0, [](const PossibleContact&) {
+                               return true;
+                           }).has_value();
         EXPECT_FALSE(passes && meets) << k;
         apart += meets ? 0 : 1;
         passed += passes ? 1 : 0;
@@ -105,14 +107,16 @@ TEST(MovingSeparation, FindsImpactTimesKnownInClosedForm) {
     constexpr double kG = 9.81;
     for (const double radius : {0.0, 0.25}) {
         const Path path = parabola_path({0.1, 0.2, 2.0}, {}, {0, 0, -kG}, 1.0);
-        const auto meeting = first_meeting(path, radius, plate, 0.0, [](const Meeting&) { return true; });
-        ASSERT_TRUE(meeting.has_value());
+        const auto contact =
+            first_possible_contact(path, radius, plate, 0.0, [](const PossibleContact&) { return true; });
+        ASSERT_TRUE(contact.has_value());
         const double height = 2.0 - radius;
-        EXPECT_NEAR(meeting->part, (-1.0 + std::sqrt(1.0 + 2.0 * kG * height)) / kG, 1e-15);
-        EXPECT_EQ(meeting->side, 1);
+        EXPECT_NEAR(contact->part, (-1.0 + std::sqrt(1.0 + 2.0 * kG * height)) / kG, 1e-15);
+        EXPECT_EQ(contact->side, 1);
     }
     const Path aside = parabola_path({9.0, 0.2, 2.0}, {}, {0, 0, -kG}, 1.0);
-    EXPECT_FALSE(first_meeting(aside, 0.0, plate, 0.0, [](const Meeting&) { return true; }).has_value());
+    EXPECT_FALSE(
+        first_possible_contact(aside, 0.0, plate, 0.0, [](const PossibleContact&) { return true; }).has_value());
 }
 
 /// Point of contact between a sphere and a triangle.
@@ -154,9 +158,10 @@ TEST(MovingSeparation, FindsTheContactOfASmallFastBall) {
         }
         const Vec3 center = touched.place + radius * touched.direction;
         const Path path = line_path(center - part * (carried + relative), carried + relative, 1.0);
-        const auto meeting = first_meeting(path, radius, triangle, 0.0, [](const Meeting&) { return true; });
-        ASSERT_TRUE(meeting.has_value()) << k;
-        EXPECT_NEAR(meeting->part, part, 1e-13) << k << " radius " << radius;
+        const auto contact =
+            first_possible_contact(path, radius, triangle, 0.0, [](const PossibleContact&) { return true; });
+        ASSERT_TRUE(contact.has_value()) << k;
+        EXPECT_NEAR(contact->part, part, 1e-13) << k << " radius " << radius;
     }
 }
 
@@ -164,10 +169,10 @@ TEST(MovingSeparation, FindsTheContactOfASmallFastBall) {
 TEST(MovingSeparation, ContinuesAfterARejectedImpact) {
     const MovingTriangle plate{{{{{-5, -5, 0}, {-5, -5, 0}}, {{5, -5, 0}, {5, -5, 0}}, {{0, 5, 0}, {0, 5, 0}}}}};
     const Path path = parabola_path({0, 0, 1.0}, {0, 0, -4.5}, {0, 0, 9.0}, 1.0);  // below from 1/3 to 2/3
-    std::optional<Meeting> last;
-    (void)first_meeting(path, 0.0, plate, 0.0, [&](const Meeting& meeting) {
-        last = meeting;
-        return meeting.side < 0;
+    std::optional<PossibleContact> last;
+    (void)first_possible_contact(path, 0.0, plate, 0.0, [&](const PossibleContact& contact) {
+        last = contact;
+        return contact.side < 0;
     });
     ASSERT_TRUE(last.has_value());
     EXPECT_NEAR(last->part, 2.0 / 3.0, 1e-14);

@@ -17,7 +17,7 @@ using Corners = std::array<Vec3, 3>;
 
 constexpr Corners kTriangle{Vec3{0, 0, 0}, Vec3{4, 0, 0}, Vec3{0, 4, 0}};
 
-std::optional<RayMeeting> met(const Vec3& origin, const Vec3& direction, const Corners& corners = kTriangle) {
+std::optional<RayIntersection> met(const Vec3& origin, const Vec3& direction, const Corners& corners = kTriangle) {
     return meet(Ray(origin, direction), corners[0], corners[1], corners[2]);
 }
 

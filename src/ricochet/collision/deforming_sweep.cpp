@@ -47,11 +47,11 @@ double DeformingSweep::certified_radius(SurfaceId surface, const MovingTriangle&
     return distance < radius_ - tolerance_ ? 0.0 : std::min(radius_, distance);
 }
 
-/// Returns the contact at a meeting, or nothing if the particle does not approach the triangle at that time.
+/// Returns the contact at a possible contact, or nothing if the particle does not approach the triangle at that time.
 std::optional<DeformingSweep::Hit> DeformingSweep::hit_at(SurfaceId surface, const MovingTriangle& triangle,
-                                                          const Meeting& meeting) const {
-    const double time = meeting.part * path_.duration;
-    const DeformedTriangle then = deformed_at(triangle, meeting.part);
+                                                          const PossibleContact& possible_contact) const {
+    const double time = possible_contact.part * path_.duration;
+    const DeformedTriangle then = deformed_at(triangle, possible_contact.part);
     const auto& [a, b, c] = then;
     const Vec3 p = path_.position(time);
     const ClosestPointOnTriangle closest = closest_point_on_triangle(p, a, b, c);
@@ -68,7 +68,7 @@ std::optional<DeformingSweep::Hit> DeformingSweep::hit_at(SurfaceId surface, con
         if (!(dot(nearest.normal, relative) < 0.0)) return std::nullopt;
         return Hit{time, {surface, nearest.normal, nearest.flat}};
     }
-    const Vec3 normal = static_cast<double>(meeting.side) * then.unit_normal();
+    const Vec3 normal = static_cast<double>(possible_contact.side) * then.unit_normal();
     if (!(dot(normal, relative) < -kDeformingGraze * length(relative))) return std::nullopt;
     return Hit{time, {surface, normal, true}};
 }
@@ -89,10 +89,11 @@ std::optional<DeformingSweep::Hit> DeformingSweep::meet(SurfaceId surface, const
         radius = kNearerFraction * distance;
     }
     std::optional<Hit> hit;
-    static_cast<void>(first_meeting(path_, radius, triangle, from, [&](const Meeting& meeting) {
-        hit = hit_at(surface, triangle, meeting);
-        return hit.has_value();
-    }));
+    static_cast<void>(
+        first_possible_contact(path_, radius, triangle, from, [&](const PossibleContact& possible_contact) {
+            hit = hit_at(surface, triangle, possible_contact);
+            return hit.has_value();
+        }));
     return hit;
 }
 

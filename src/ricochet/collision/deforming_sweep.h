@@ -53,7 +53,7 @@ private:
     [[nodiscard]] double certified_radius(SurfaceId surface, const MovingTriangle& triangle) const;
     [[nodiscard]] std::optional<Hit> meet(SurfaceId surface, const MovingTriangle& triangle) const;
     [[nodiscard]] std::optional<Hit> hit_at(SurfaceId surface, const MovingTriangle& triangle,
-                                            const Meeting& meeting) const;
+                                            const PossibleContact& possible_contact) const;
     [[nodiscard]] std::optional<Contact> first_of(std::vector<Hit> hits) const;
 
     const DeformingColliders& deforming_;

@@ -51,9 +51,9 @@ struct Reach {
 
 std::optional<MetTriangle> meet(const MeshIndex& mesh, const RayQuestion& question, std::uint32_t triangle) {
     const auto [a, b, c] = mesh.corners(triangle);
-    const auto meeting = meet(question.ray, a, b, c);
-    if (!meeting || !question.reaches(meeting->t)) return std::nullopt;
-    return MetTriangle{{a, b, c}, *meeting};
+    const auto intersection = meet(question.ray, a, b, c);
+    if (!intersection || !question.reaches(intersection->t)) return std::nullopt;
+    return MetTriangle{{a, b, c}, *intersection};
 }
 
 bool comes_before(const Ray& ray, const Candidate& x, const Candidate& y) {
@@ -74,12 +74,12 @@ std::vector<Passed> features_passed(const std::vector<Candidate>& candidates) {
     std::vector<Passed> passed;
     for (std::uint32_t k = 0; k < candidates.size(); ++k) {
         const MetTriangle& met = candidates[k].met;
-        passed.push_back({FeatureKey(met.corners, met.meeting.feature), k});
-        if (!met.meeting.in_plane) continue;
+        passed.push_back({FeatureKey(met.corners, met.intersection.feature), k});
+        if (!met.intersection.in_plane) continue;
         for (int f = static_cast<int>(TriangleFeature::kEdgeAB); f <= static_cast<int>(TriangleFeature::kVertexC);
              ++f) {
             const auto feature = static_cast<TriangleFeature>(f);
-            if (met.meeting.features.has(feature)) passed.push_back({FeatureKey(met.corners, feature), k});
+            if (met.intersection.features.has(feature)) passed.push_back({FeatureKey(met.corners, feature), k});
         }
     }
     std::sort(passed.begin(), passed.end(), [](const Passed& x, const Passed& y) {
@@ -105,18 +105,18 @@ DisjointSets join(const std::vector<Candidate>& candidates) {
 /// along y and z. The moved ray hits neither edges nor vertices. Method: H. Edelsbrunner, E. P. Muecke, "Simulation of
 /// Simplicity", ACM Transactions on Graphics 9, 1990.
 int moved_crossing(const Ray& ray, const MetTriangle& met) {
-    const RayMeeting& meeting = met.meeting;
-    if (meeting.speed == 0) return 0;
-    if (meeting.feature == TriangleFeature::kFace && meeting.t.hi > 0.0) return meeting.speed;
+    const RayIntersection& intersection = met.intersection;
+    if (intersection.speed == 0) return 0;
+    if (intersection.feature == TriangleFeature::kFace && intersection.t.hi > 0.0) return intersection.speed;
     const auto& [a, b, c] = met.corners;
     const ExactDifference u(b, a);
     const ExactDifference v(c, a);
     for (const int side : {moved_side(ray, a, b), moved_side(ray, b, c), moved_side(ray, c, a)}) {
-        if (side != meeting.speed) return 0;
+        if (side != intersection.speed) return 0;
     }
     int height = detail::exact_determinant(u, v, ExactDifference(a, ray.origin)).sign();
     for (int axis = 0; axis < 3 && height == 0; ++axis) height = -detail::exact_cross_component(u, v, axis).sign();
-    return height == meeting.speed ? meeting.speed : 0;
+    return height == intersection.speed ? intersection.speed : 0;
 }
 
 void write_places(const RayQuestion& question, const MeshIndex& mesh, const std::vector<Candidate>& candidates,
@@ -130,10 +130,10 @@ void write_places(const RayQuestion& question, const MeshIndex& mesh, const std:
         std::size_t& number = place_of[joined.find(k)];
         if (number == kNone) {
             number = crossings.size();
-            crossings.push_back({met.meeting.t, triangle, 0, true});
+            crossings.push_back({met.intersection.t, triangle, 0, true});
         }
         RayCrossing& crossing_point = crossings[number];
-        crossing_point.is_in_plane = crossing_point.is_in_plane && met.meeting.in_plane;
+        crossing_point.is_in_plane = crossing_point.is_in_plane && met.intersection.in_plane;
         crossing_point.crossing = static_cast<std::int8_t>(crossing_point.crossing + moved_crossing(question.ray, met));
     }
 }
@@ -167,11 +167,11 @@ std::optional<RayCrossing> first_crossing_on(const MeshIndex& mesh, const RayQue
         const Candidate candidate{triangle, *met};
         if (best && !comes_before(question.ray, candidate, *best)) return limit;
         best = candidate;
-        limit = reach.fraction(met->meeting.t.hi);
+        limit = reach.fraction(met->intersection.t.hi);
         return limit;
     });
     if (!best) return std::nullopt;
-    return RayCrossing{best->met.meeting.t, best->triangle, 0};
+    return RayCrossing{best->met.intersection.t, best->triangle, 0};
 }
 
 bool hits_anything(const MeshIndex& mesh, const RayQuestion& question) {

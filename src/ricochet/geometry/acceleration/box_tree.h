@@ -35,7 +35,7 @@ public:
             return;
         }
         place_boxes(box_of);
-        if (place_branches() <= kPoor * cost_when_built_) return;
+        if (place_branches() <= kRebuildCostRatio * cost_when_built_) return;
         build(all_boxes(count, box_of));
     }
 
@@ -154,7 +154,7 @@ private:
     static constexpr std::size_t kBlock = 1 << 13;
     /// Growth of the cost of all branches since the last build, at which the hierarchy is rebuilt. Local, because only
     /// the cost depends on it.
-    static constexpr double kPoor = 2.0;
+    static constexpr double kRebuildCostRatio = 2.0;
     /// Capacity of the stack of open nodes. Division of 2^31 boxes by four at each level gives at most 17 levels. At
     /// most three children wait on each level except the last.
     static constexpr std::size_t kMostOpen = 64;

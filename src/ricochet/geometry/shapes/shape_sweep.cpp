@@ -137,9 +137,9 @@ std::optional<double> ConservativeAdvancement::first_from_outside(double from) c
 /// whole interval is free.
 std::optional<double> ConservativeAdvancement::safe_fraction(const Separation& low, const Separation& high) const {
     const double span = high.time - low.time;
-    const double bend = std::sqrt(
+    const double acceleration = std::sqrt(
         std::max(length_squared(path_.acceleration(low.time)), length_squared(path_.acceleration(high.time))));
-    const double curve = path_.degree < 2 ? 0.0 : 0.5 * bend * span * span;
+    const double curve = path_.degree < 2 ? 0.0 : 0.5 * acceleration * span * span;
     const double start = std::max(low.size, 0.0);
     // Roots of curve x^2 - fall x + start.
     const double fall = start - high.size + curve;

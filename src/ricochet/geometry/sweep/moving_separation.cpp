@@ -221,12 +221,12 @@ private:
 /// Search for the first contact along a curved path.
 class Search {
 public:
-    using Counts = std::function<bool(const Meeting&)>;
+    using Counts = std::function<bool(const PossibleContact&)>;
 
     Search(const Path& path, double radius, const MovingTriangle& triangle, const Counts& counts)
         : path_(path), radius_(radius), triangle_(triangle), counts_(counts), control_(path.control_points()) {}
 
-    [[nodiscard]] std::optional<Meeting> first(double s, double t, int depth) {
+    [[nodiscard]] std::optional<PossibleContact> first(double s, double t, int depth) {
         if (is_free(s, t)) return std::nullopt;
         if (depth >= kShallowRoot) {
             if (const auto root = root_in(s, t)) return counted({*root, side_at(s)});
@@ -240,8 +240,8 @@ public:
 
 private:
     [[nodiscard]] Vec3 position(double s) const { return path_.position(s * path_.duration); }
-    [[nodiscard]] std::optional<Meeting> counted(const Meeting& meeting) const {
-        return counts_(meeting) ? std::optional(meeting) : std::nullopt;
+    [[nodiscard]] std::optional<PossibleContact> counted(const PossibleContact& contact) const {
+        return counts_(contact) ? std::optional(contact) : std::nullopt;
     }
     [[nodiscard]] int side_at(double s) const {
         const auto& [a, b, c] = triangle_.corners;
@@ -286,7 +286,7 @@ private:
     [[nodiscard]] bool is_free_of_degree(double s, double t) const {
         const double middle = s + 0.5 * (t - s);
         const ClosestPointOnTriangle nearest = nearest_at(position(middle), triangle_, middle);
-        if (is_too_far_to_come<Degree>(s, t, std::sqrt(nearest.distance_squared))) return true;
+        if (is_gap_above_displacement<Degree>(s, t, std::sqrt(nearest.distance_squared))) return true;
         const auto& [a, b, c] = triangle_.corners;
         const Vector<double, Degree> w = offset_from<Degree>(a, s, t);
         const Vector<double, 1> u = offset_on<double>(a, b, s, t);
@@ -297,7 +297,7 @@ private:
     /// Returns true if the gap at mid-time exceeds the displacement relative to each corner, from mid-time to any other
     /// time of the interval. The gap then also exceeds the displacement relative to all other points of the triangle.
     template <std::size_t Degree>
-    [[nodiscard]] bool is_too_far_to_come(double s, double t, double distance) const {
+    [[nodiscard]] bool is_gap_above_displacement(double s, double t, double distance) const {
         const double spare = distance - radius_ - kLeastGap * offset();
         if (!(spare > 0.0)) return false;
         const std::array<Vec3, Degree + 1> piece = piece_of<Degree>(s, t);
@@ -409,8 +409,9 @@ bool pass_along_direction(const Path& path, double radius, const MovingTriangle&
     return are_beyond(path.control_points(), kError<double>, radius, triangle);
 }
 
-std::optional<Meeting> first_meeting(const Path& path, double radius, const MovingTriangle& triangle, double from,
-                                     const std::function<bool(const Meeting&)>& counts) {
+std::optional<PossibleContact> first_possible_contact(const Path& path, double radius, const MovingTriangle& triangle,
+                                                      double from,
+                                                      const std::function<bool(const PossibleContact&)>& counts) {
     return Search(path, radius, triangle, counts).first(from, 1.0, 0);
 }
 

@@ -32,15 +32,16 @@ namespace ricochet {
 [[nodiscard]] bool pass_along_direction(const Path& path, double radius, const MovingTriangle& triangle);
 
 /// A possible contact, up to rounding, of a point or sphere on a path with a triangle.
-struct Meeting {
+struct PossibleContact {
     double part = 0.0;  ///< time, as a fraction of the path's duration
     int side = 0;       ///< side of the triangle's plane from which a point comes: +1 is the normal's side
 };
 
 /// Finds the first contact of a point (radius 0) or a sphere on the path with the moving triangle. Ignores contacts
-/// before the fraction `from` of the duration, and contacts for which counts(meeting) is false. Returns nullopt if
+/// before the fraction `from` of the duration, and contacts for which counts(contact) is false. Returns nullopt if
 /// there is no other contact. A sphere must not touch the triangle at the start.
-[[nodiscard]] std::optional<Meeting> first_meeting(const Path& path, double radius, const MovingTriangle& triangle,
-                                                   double from, const std::function<bool(const Meeting&)>& counts);
+[[nodiscard]] std::optional<PossibleContact> first_possible_contact(
+    const Path& path, double radius, const MovingTriangle& triangle, double from,
+    const std::function<bool(const PossibleContact&)>& counts);
 
 }  // namespace ricochet

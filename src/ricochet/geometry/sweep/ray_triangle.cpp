@@ -82,7 +82,7 @@ int dominant_axis(const Vec3& v) {
 }
 
 /// Returns, as a quotient, t of a corner on the line, or t of the crossing with an edge.
-ExactRatio place_in_plane(const Ray& ray, const Corners& triangle, TriangleFeature feature, int axis) {
+ExactRatio parameter_in_plane(const Ray& ray, const Corners& triangle, TriangleFeature feature, int axis) {
     const std::size_t k = number_of(feature);
     const ExactDifference from_origin(triangle[k], ray.origin);
     if (rank(feature) == 2) {
@@ -98,14 +98,14 @@ ExactRatio place_in_plane(const Ray& ray, const Corners& triangle, TriangleFeatu
 int sign_of(const ExactRatio& ratio) { return ratio.numerator.sign() * ratio.denominator.sign(); }
 
 /// The common points of ray and triangle, at most five.
-struct Places {
+struct CommonPoints {
     std::array<TriangleFeature, 5> feature{};
     std::array<ExactRatio, 5> t;
     std::size_t count = 0;
 
     void add(const Ray& ray, const Corners& triangle, TriangleFeature part, int axis) {
         feature[count] = part;
-        t[count] = place_in_plane(ray, triangle, part, axis);
+        t[count] = parameter_in_plane(ray, triangle, part, axis);
         ++count;
     }
 };
@@ -121,38 +121,38 @@ TriangleFeature feature_of_origin(const std::array<int, 3>& sides) {
 
 /// Intersects a line with a triangle if all determinants of line and edges are zero. Either the line is in the
 /// triangle's plane, or the triangle has no area and the line intersects the line through its corners.
-std::optional<RayMeeting> meet_in_plane(const Ray& ray, const Corners& triangle) {
+std::optional<RayIntersection> meet_in_plane(const Ray& ray, const Corners& triangle) {
     const int axis = axis_of(ray, triangle);
     const auto sides = sides_of(ray, triangle, axis);
-    Places places;
+    CommonPoints points;
     for (std::size_t k = 0; k < 3; ++k) {
-        if (sides[k] == 0) places.add(ray, triangle, vertex(k), axis);
-        if (are_opposite(sides[k], sides[(k + 1) % 3])) places.add(ray, triangle, edge(k), axis);
+        if (sides[k] == 0) points.add(ray, triangle, vertex(k), axis);
+        if (are_opposite(sides[k], sides[(k + 1) % 3])) points.add(ray, triangle, edge(k), axis);
     }
-    RayMeeting meeting;
-    meeting.in_plane = true;
-    meeting.axis = axis;
+    RayIntersection intersection;
+    intersection.in_plane = true;
+    intersection.axis = axis;
     std::optional<std::size_t> first;
     bool is_behind = false;
-    for (std::size_t i = 0; i < places.count; ++i) {
-        if (sign_of(places.t[i]) < 0) {
+    for (std::size_t i = 0; i < points.count; ++i) {
+        if (sign_of(points.t[i]) < 0) {
             is_behind = true;
             continue;
         }
-        meeting.features.add(places.feature[i]);
-        if (!first || compare(places.t[i], places.t[*first]) < 0) first = i;
+        intersection.features.add(points.feature[i]);
+        if (!first || compare(points.t[i], points.t[*first]) < 0) first = i;
     }
     if (!first) return std::nullopt;
-    meeting.feature = places.feature[*first];
-    const ExactRatio& t = places.t[*first];
+    intersection.feature = points.feature[*first];
+    const ExactRatio& t = points.t[*first];
     if (is_behind && sign_of(t) > 0) {
-        meeting.feature = feature_of_origin(sides);
-        meeting.from_origin = true;
-        meeting.t = {};
-        return meeting;
+        intersection.feature = feature_of_origin(sides);
+        intersection.from_origin = true;
+        intersection.t = {};
+        return intersection;
     }
-    meeting.t = quotient(rounded(t.numerator), rounded(t.denominator));
-    return meeting;
+    intersection.t = quotient(rounded(t.numerator), rounded(t.denominator));
+    return intersection;
 }
 
 /// Returns t at which the line crosses the plane of a triangle with an area.
@@ -180,10 +180,11 @@ TriangleFeature feature_of_sides(const std::array<int, 3>& sides) {
 }
 
 /// Returns the exact t of an intersection.
-ExactRatio place_of(const Ray& ray, const MetTriangle& met) {
+ExactRatio parameter_of(const Ray& ray, const MetTriangle& met) {
     const auto& [a, b, c] = met.corners;
-    if (met.meeting.from_origin) return {{}, widened(Expansion<2>(DoubleDouble{1.0, 0.0}))};
-    if (met.meeting.in_plane) return place_in_plane(ray, met.corners, met.meeting.feature, met.meeting.axis);
+    if (met.intersection.from_origin) return {{}, widened(Expansion<2>(DoubleDouble{1.0, 0.0}))};
+    if (met.intersection.in_plane)
+        return parameter_in_plane(ray, met.corners, met.intersection.feature, met.intersection.axis);
     const ExactDifference u(b, a);
     const ExactDifference v(c, a);
     return {detail::exact_determinant(u, v, ExactDifference(a, ray.origin)),
@@ -215,7 +216,7 @@ double Ray::distance(const DoubleDouble& t) const {
     return (t * sqrt(square(direction.x) + square(direction.y) + square(direction.z))).hi;
 }
 
-std::optional<RayMeeting> meet(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
+std::optional<RayIntersection> meet(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
     // Cheap filters reject nearly everything before any exact computation.
     const Vec3& d = ray.direction;
     const Vec3 oa = a - ray.origin;
@@ -246,11 +247,11 @@ std::optional<RayMeeting> meet(const Ray& ray, const Vec3& a, const Vec3& b, con
     if (speed == 0) return std::nullopt;
     if (height == 0) height = exact_sign(u, v, ExactDifference(a, ray.origin));
     if (are_opposite(height, speed)) return std::nullopt;
-    RayMeeting meeting;
-    meeting.feature = feature_of_sides(sides);
-    meeting.speed = speed;
-    meeting.t = height == 0 ? DoubleDouble{} : crossing(ray, a, b, c);
-    return meeting;
+    RayIntersection intersection;
+    intersection.feature = feature_of_sides(sides);
+    intersection.speed = speed;
+    intersection.t = height == 0 ? DoubleDouble{} : crossing(ray, a, b, c);
+    return intersection;
 }
 
 FeatureKey::FeatureKey(const Corners& triangle, TriangleFeature feature) : count(3 - rank(feature)), corners(triangle) {
@@ -273,18 +274,18 @@ int FeatureKey::order(const FeatureKey& x, const FeatureKey& y) {
 }
 
 int compare_along(const Ray& ray, const MetTriangle& x, const MetTriangle& y) {
-    const double x_t = x.meeting.t.hi;
-    const double y_t = y.meeting.t.hi;
+    const double x_t = x.intersection.t.hi;
+    const double y_t = y.intersection.t.hi;
     const double difference = x_t - y_t;
     if (std::fabs(difference) > kSeparated * std::max(std::fabs(x_t), std::fabs(y_t))) {
         return difference < 0.0 ? -1 : 1;
     }
-    const bool from_origin = x.meeting.from_origin || y.meeting.from_origin;
-    if (!from_origin &&
-        FeatureKey::order(FeatureKey(x.corners, x.meeting.feature), FeatureKey(y.corners, y.meeting.feature)) == 0) {
+    const bool from_origin = x.intersection.from_origin || y.intersection.from_origin;
+    if (!from_origin && FeatureKey::order(FeatureKey(x.corners, x.intersection.feature),
+                                          FeatureKey(y.corners, y.intersection.feature)) == 0) {
         return 0;
     }
-    return compare(place_of(ray, x), place_of(ray, y));
+    return compare(parameter_of(ray, x), parameter_of(ray, y));
 }
 
 }  // namespace ricochet

@@ -47,7 +47,7 @@ private:
 };
 
 /// The intersection of a ray and a closed triangle.
-struct RayMeeting {
+struct RayIntersection {
     DoubleDouble t;                                    ///< of the first common point, with a relative error of 2^-58
     TriangleFeature feature = TriangleFeature::kFace;  ///< of the triangle, at the first common point
     int speed = 0;                                     ///< sign of direction . normal; 0 if in_plane
@@ -59,12 +59,12 @@ struct RayMeeting {
 
 /// Returns the intersection, or nullopt if ray and triangle certainly have no common point. Exact. A triangle without
 /// area counts as the segment or point that its corners span.
-[[nodiscard]] std::optional<RayMeeting> meet(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c);
+[[nodiscard]] std::optional<RayIntersection> meet(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// A triangle that a ray intersects.
 struct MetTriangle {
     std::array<Vec3, 3> corners;
-    RayMeeting meeting;
+    RayIntersection intersection;
 };
 
 /// The identity of a triangle's feature. The corners are sorted by coordinates, so that the keys of a shared feature

@@ -21,7 +21,7 @@
 namespace ricochet {
 
 /// Number of queries per block of parallel work.
-inline constexpr std::size_t kQuestionBlock = 256;
+inline constexpr std::size_t kQueryBlock = 256;
 
 /// Mesh with its data structures. Any number of threads may use it.
 class MeshIndex {

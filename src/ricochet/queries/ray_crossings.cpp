@@ -33,12 +33,12 @@ struct Reach {
     double t = 0.0;  ///< parameter of the ray at the end of the tube
     Tube tube;
 
-    Reach(const MeshIndex& mesh, const RayQuestion& question) {
-        const Ray& ray = question.ray;
+    Reach(const MeshIndex& mesh, const RayQuery& query) {
+        const Ray& ray = query.ray;
         const Box3& box = mesh.box();
         const Vec3 farthest = max(abs(box.lower - ray.origin), abs(box.upper - ray.origin));
         const double norm = length(ray.direction);
-        const double longest = std::min(length(farthest), question.most);
+        const double longest = std::min(length(farthest), query.most);
         t = longest / norm * (1.0 + kBeyond) + std::numeric_limits<double>::min();
         const Vec3 end = ray.origin + t * ray.direction;
         tube = Tube(ray.origin, end, kEndRounding * (max_abs(ray.origin) + max_abs(end)));
@@ -49,10 +49,10 @@ struct Reach {
     }
 };
 
-std::optional<MetTriangle> meet(const MeshIndex& mesh, const RayQuestion& question, std::uint32_t triangle) {
+std::optional<MetTriangle> meet(const MeshIndex& mesh, const RayQuery& query, std::uint32_t triangle) {
     const auto [a, b, c] = mesh.corners(triangle);
-    const auto intersection = meet(question.ray, a, b, c);
-    if (!intersection || !question.reaches(intersection->t)) return std::nullopt;
+    const auto intersection = meet(query.ray, a, b, c);
+    if (!intersection || !query.reaches(intersection->t)) return std::nullopt;
     return MetTriangle{{a, b, c}, *intersection};
 }
 
@@ -119,22 +119,22 @@ int moved_crossing(const Ray& ray, const MetTriangle& met) {
     return height == intersection.speed ? intersection.speed : 0;
 }
 
-void write_places(const RayQuestion& question, const MeshIndex& mesh, const std::vector<Candidate>& candidates,
-                  std::vector<RayCrossing>& crossings) {
+void append_crossings(const RayQuery& query, const MeshIndex& mesh, const std::vector<Candidate>& candidates,
+                      std::vector<RayCrossing>& crossings) {
     constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
     DisjointSets joined = join(candidates);
-    std::vector<std::size_t> place_of(candidates.size(), kNone);
+    std::vector<std::size_t> crossing_of(candidates.size(), kNone);
     for (std::uint32_t k = 0; k < candidates.size(); ++k) {
         const auto& [triangle, met] = candidates[k];
         if (mesh.is_degenerate(triangle)) continue;  // a degenerate triangle only joins hits of other triangles
-        std::size_t& number = place_of[joined.find(k)];
+        std::size_t& number = crossing_of[joined.find(k)];
         if (number == kNone) {
             number = crossings.size();
             crossings.push_back({met.intersection.t, triangle, 0, true});
         }
         RayCrossing& crossing_point = crossings[number];
         crossing_point.is_in_plane = crossing_point.is_in_plane && met.intersection.in_plane;
-        crossing_point.crossing = static_cast<std::int8_t>(crossing_point.crossing + moved_crossing(question.ray, met));
+        crossing_point.crossing = static_cast<std::int8_t>(crossing_point.crossing + moved_crossing(query.ray, met));
     }
 }
 
@@ -156,16 +156,16 @@ int moved_side(const Ray& ray, const Vec3& p, const Vec3& q) {
     return 0;
 }
 
-std::optional<RayCrossing> first_crossing_on(const MeshIndex& mesh, const RayQuestion& question) {
-    const Reach reach(mesh, question);
+std::optional<RayCrossing> first_crossing_on(const MeshIndex& mesh, const RayQuery& query) {
+    const Reach reach(mesh, query);
     std::optional<Candidate> best;
     double limit = 1.0;
     mesh.hierarchy().query_tube(reach.tube, [&](std::uint32_t triangle, double enter, double /*leave*/) {
         if (enter > limit || mesh.is_degenerate(triangle)) return limit;
-        const auto met = meet(mesh, question, triangle);
+        const auto met = meet(mesh, query, triangle);
         if (!met) return limit;
         const Candidate candidate{triangle, *met};
-        if (best && !comes_before(question.ray, candidate, *best)) return limit;
+        if (best && !comes_before(query.ray, candidate, *best)) return limit;
         best = candidate;
         limit = reach.fraction(met->intersection.t.hi);
         return limit;
@@ -174,23 +174,23 @@ std::optional<RayCrossing> first_crossing_on(const MeshIndex& mesh, const RayQue
     return RayCrossing{best->met.intersection.t, best->triangle, 0};
 }
 
-bool hits_anything(const MeshIndex& mesh, const RayQuestion& question) {
-    const Reach reach(mesh, question);
+bool hits_anything(const MeshIndex& mesh, const RayQuery& query) {
+    const Reach reach(mesh, query);
     bool found = false;
     mesh.hierarchy().query_tube(reach.tube, [&](std::uint32_t triangle, double, double) {
-        if (!found && !mesh.is_degenerate(triangle)) found = meet(mesh, question, triangle).has_value();
+        if (!found && !mesh.is_degenerate(triangle)) found = meet(mesh, query, triangle).has_value();
         return found ? 0.0 : 1.0;
     });
     return found;
 }
 
-void all_crossings(const MeshIndex& mesh, const RayQuestion& question, std::vector<RayCrossing>& crossings) {
+void all_crossings(const MeshIndex& mesh, const RayQuery& query, std::vector<RayCrossing>& crossings) {
     thread_local std::vector<Candidate> candidates;
     candidates.clear();
     crossings.clear();
-    const Reach reach(mesh, question);
+    const Reach reach(mesh, query);
     mesh.hierarchy().query_tube(reach.tube, [&](std::uint32_t triangle, double, double) {
-        if (const auto met = meet(mesh, question, triangle)) candidates.push_back({triangle, *met});
+        if (const auto met = meet(mesh, query, triangle)) candidates.push_back({triangle, *met});
         return 1.0;
     });
     std::sort(candidates.begin(), candidates.end(),
@@ -200,8 +200,8 @@ void all_crossings(const MeshIndex& mesh, const RayQuestion& question, std::vect
                                  [](const Candidate& x, const Candidate& y) { return x.triangle == y.triangle; }),
                      candidates.end());
     std::sort(candidates.begin(), candidates.end(),
-              [&](const Candidate& x, const Candidate& y) { return comes_before(question.ray, x, y); });
-    write_places(question, mesh, candidates, crossings);
+              [&](const Candidate& x, const Candidate& y) { return comes_before(query.ray, x, y); });
+    append_crossings(query, mesh, candidates, crossings);
 }
 
 }  // namespace ricochet

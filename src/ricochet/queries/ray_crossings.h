@@ -14,7 +14,7 @@ namespace ricochet {
 class MeshIndex;
 
 /// Ray with a range.
-struct RayQuestion {
+struct RayQuery {
     Ray ray;
     double most = 0.0;  ///< range in m, may be infinite
 
@@ -33,14 +33,14 @@ struct RayCrossing {
 };
 
 /// Returns the first hit, or nullopt if there is none.
-[[nodiscard]] std::optional<RayCrossing> first_crossing_on(const MeshIndex& mesh, const RayQuestion& question);
+[[nodiscard]] std::optional<RayCrossing> first_crossing_on(const MeshIndex& mesh, const RayQuery& query);
 /// Returns the sign of the determinant of p - origin, q - origin and the ray's direction. The sign is +1 if the edge
 /// from p to q turns to the left about the ray. It is never 0 for an edge that is not parallel to the ray. The origin
 /// is treated as moved by an infinitesimal amount, as for crossings.
 [[nodiscard]] int moved_side(const Ray& ray, const Vec3& p, const Vec3& q);
 /// Returns true if there is a hit.
-[[nodiscard]] bool hits_anything(const MeshIndex& mesh, const RayQuestion& question);
+[[nodiscard]] bool hits_anything(const MeshIndex& mesh, const RayQuery& query);
 /// Finds all hits in the order along the ray, for MeshQueries::all_hits().
-void all_crossings(const MeshIndex& mesh, const RayQuestion& question, std::vector<RayCrossing>& crossings);
+void all_crossings(const MeshIndex& mesh, const RayQuery& query, std::vector<RayCrossing>& crossings);
 
 }  // namespace ricochet

@@ -45,46 +45,45 @@ double most_of(const RayBatch& rays, std::size_t i) {
     return rays.most.size() == 1 ? rays.most[0] : rays.most[i];
 }
 
-/// Calls answer(block, i, question) for every ray i, in parallel, block by block.
-template <class Answer>
-void for_each_ray(const RayBatch& rays, const Answer& answer) {
+/// Calls visit(block, i, query) for every ray i, in parallel, block by block.
+template <class Visit>
+void for_each_ray(const RayBatch& rays, const Visit& visit) {
     require_rays(rays);
-    parallel_for_blocks(
-        rays.origins.size(), kQuestionBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                if (i % kPollEvery == 0) poll_loop_stop();
-                answer(block, i, RayQuestion{Ray(rays.origins[i], rays.directions[i]), most_of(rays, i)});
-            }
-        });
+    parallel_for_blocks(rays.origins.size(), kQueryBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i % kPollEvery == 0) poll_loop_stop();
+            visit(block, i, RayQuery{Ray(rays.origins[i], rays.directions[i]), most_of(rays, i)});
+        }
+    });
 }
 
 }  // namespace
 
 MeshHits MeshQueries::first_hits(const RayBatch& rays) const {
     MeshHits hits = no_hits(rays.origins.size());
-    for_each_ray(rays, [&](std::size_t, std::size_t i, const RayQuestion& question) {
-        const std::optional<RayCrossing> crossing_point = first_crossing_on(*index_, question);
+    for_each_ray(rays, [&](std::size_t, std::size_t i, const RayQuery& query) {
+        const std::optional<RayCrossing> crossing_point = first_crossing_on(*index_, query);
         if (!crossing_point) return;
         hits.triangle[i] = crossing_point->triangle;
-        hits.distance[i] = question.ray.distance(crossing_point->t);
-        hits.point[i] = question.ray.at(crossing_point->t);
+        hits.distance[i] = query.ray.distance(crossing_point->t);
+        hits.point[i] = query.ray.at(crossing_point->t);
     });
     return hits;
 }
 
 std::vector<std::uint8_t> MeshQueries::occluded(const RayBatch& rays) const {
-    std::vector<std::uint8_t> answers(rays.origins.size(), 0);
-    for_each_ray(rays, [&](std::size_t, std::size_t i, const RayQuestion& question) {
-        answers[i] = hits_anything(*index_, question) ? 1 : 0;
+    std::vector<std::uint8_t> results(rays.origins.size(), 0);
+    for_each_ray(rays, [&](std::size_t, std::size_t i, const RayQuery& query) {
+        results[i] = hits_anything(*index_, query) ? 1 : 0;
     });
-    return answers;
+    return results;
 }
 
 std::vector<std::uint64_t> MeshQueries::count_hits(const RayBatch& rays) const {
     std::vector<std::uint64_t> counts(rays.origins.size(), 0);
-    for_each_ray(rays, [&](std::size_t, std::size_t i, const RayQuestion& question) {
+    for_each_ray(rays, [&](std::size_t, std::size_t i, const RayQuery& query) {
         thread_local std::vector<RayCrossing> crossings;
-        all_crossings(*index_, question, crossings);
+        all_crossings(*index_, query, crossings);
         counts[i] = crossings.size();
     });
     return counts;
@@ -98,10 +97,10 @@ AllMeshHits MeshQueries::all_hits(const RayBatch& rays) const {
         std::size_t ray;
         RayCrossing crossing_point;
     };
-    std::vector<std::vector<Found>> blocks((count + kQuestionBlock - 1) / kQuestionBlock);
-    for_each_ray(rays, [&](std::size_t block, std::size_t i, const RayQuestion& question) {
+    std::vector<std::vector<Found>> blocks((count + kQueryBlock - 1) / kQueryBlock);
+    for_each_ray(rays, [&](std::size_t block, std::size_t i, const RayQuery& query) {
         thread_local std::vector<RayCrossing> crossings;
-        all_crossings(*index_, question, crossings);
+        all_crossings(*index_, query, crossings);
         all.first[i + 1] = crossings.size();
         for (const RayCrossing& crossing_point : crossings) blocks[block].push_back({i, crossing_point});
     });
@@ -110,12 +109,12 @@ AllMeshHits MeshQueries::all_hits(const RayBatch& rays) const {
     all.crossing.assign(all.first.back(), 0);
     all.in_plane.assign(all.first.back(), 0);
     parallel_for_blocks(blocks.size(), 1, [&](std::size_t block, std::size_t, std::size_t) {
-        std::size_t k = all.first[block * kQuestionBlock];
+        std::size_t k = all.first[block * kQueryBlock];
         for (const auto& [ray, crossing_point] : blocks[block]) {
-            const RayQuestion question{Ray(rays.origins[ray], rays.directions[ray]), kInfinity};
+            const RayQuery query{Ray(rays.origins[ray], rays.directions[ray]), kInfinity};
             all.hits.triangle[k] = crossing_point.triangle;
-            all.hits.distance[k] = question.ray.distance(crossing_point.t);
-            all.hits.point[k] = question.ray.at(crossing_point.t);
+            all.hits.distance[k] = query.ray.distance(crossing_point.t);
+            all.hits.point[k] = query.ray.at(crossing_point.t);
             all.crossing[k] = crossing_point.crossing;
             all.in_plane[k++] = crossing_point.is_in_plane ? 1 : 0;
         }

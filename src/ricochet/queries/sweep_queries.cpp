@@ -59,7 +59,7 @@ struct Contact {
 template <class First>
 MeshHits first_contacts(const Paths& paths, const First& first) {
     MeshHits hits = no_hits(paths.from.size());
-    parallel_for_blocks(paths.from.size(), kQuestionBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for_blocks(paths.from.size(), kQueryBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             poll_loop_stop();
             const std::optional<Contact> contact = first(i);
@@ -127,7 +127,7 @@ std::optional<Contact> sphere_contact(const MeshIndex& mesh, const TriangleBvh& 
 
 /// Number of equal parts of the path at whose ends an overlapping sphere is tested for separation from a moving
 /// triangle.
-constexpr int kLooksForTheWayOut = 64;
+constexpr int kSeparationSamples = 64;
 
 /// Returns the rounded rest of a displacement, from the given fraction on.
 MovingPoint rest_of(const MovingPoint& displacement, double from) { return {displacement.at(from), displacement.to}; }
@@ -135,8 +135,8 @@ MovingPoint rest_of(const MovingPoint& displacement, double from) { return {disp
 /// Returns the first contact after the sphere has separated from the triangle.
 std::optional<MovingContact> contact_after_leaving(const MovingPoint& point, double radius,
                                                    const MovingTriangle& triangle) {
-    for (int k = 1; k < kLooksForTheWayOut; ++k) {
-        const double from = static_cast<double>(k) / kLooksForTheWayOut;
+    for (int k = 1; k < kSeparationSamples; ++k) {
+        const double from = static_cast<double>(k) / kSeparationSamples;
         if (!is_apart(point, radius, triangle, from, from)) continue;
         const auto& [a, b, c] = triangle.corners;
         auto contact =

@@ -55,14 +55,14 @@ double distance(const MeshIndex& mesh, const Nearest& nearest, const Vec3& p) {
     return std::fabs(signed_distance(p, a, b, c));
 }
 
-/// Calls answer(i) for every point i, in parallel.
-template <class Answer>
-void for_each_point(std::span<const Vec3> points, const Answer& answer) {
+/// Calls visit(i) for every point i, in parallel.
+template <class Visit>
+void for_each_point(std::span<const Vec3> points, const Visit& visit) {
     require_positions(points, "points");
-    parallel_for_blocks(points.size(), kQuestionBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for_blocks(points.size(), kQueryBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             poll_loop_stop();
-            answer(i);
+            visit(i);
         }
     });
 }
@@ -71,15 +71,15 @@ void for_each_point(std::span<const Vec3> points, const Answer& answer) {
 
 std::vector<std::uint8_t> MeshQueries::inside(std::span<const Vec3> points, InsideRule rule) const {
     const MeshInterior& interior = index_->interior(rule);
-    std::vector<std::uint8_t> answers(points.size());
-    for_each_point(points, [&](std::size_t i) { answers[i] = interior.contains(points[i], rule) ? 1 : 0; });
-    return answers;
+    std::vector<std::uint8_t> results(points.size());
+    for_each_point(points, [&](std::size_t i) { results[i] = interior.contains(points[i], rule) ? 1 : 0; });
+    return results;
 }
 
 std::vector<double> MeshQueries::winding_numbers(std::span<const Vec3> points) const {
-    std::vector<double> answers(points.size());
-    for_each_point(points, [&](std::size_t i) { answers[i] = winding_number(*index_, points[i]); });
-    return answers;
+    std::vector<double> results(points.size());
+    for_each_point(points, [&](std::size_t i) { results[i] = winding_number(*index_, points[i]); });
+    return results;
 }
 
 NearestPoints MeshQueries::closest_points(std::span<const Vec3> points, double within) const {
@@ -103,13 +103,13 @@ NearestPoints MeshQueries::closest_points(std::span<const Vec3> points, double w
 
 std::vector<double> MeshQueries::signed_distances(std::span<const Vec3> points, InsideRule rule) const {
     const MeshInterior& interior = index_->interior(rule);
-    std::vector<double> answers(points.size());
+    std::vector<double> results(points.size());
     for_each_point(points, [&](std::size_t i) {
         const auto found = nearest(*index_, points[i], kInfinity);
         const double far = found ? distance(*index_, *found, points[i]) : kInfinity;
-        answers[i] = interior.contains(points[i], rule) ? -far : far;
+        results[i] = interior.contains(points[i], rule) ? -far : far;
     });
-    return answers;
+    return results;
 }
 
 }  // namespace ricochet

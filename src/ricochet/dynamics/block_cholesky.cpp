@@ -23,7 +23,7 @@ using Pair = BlockCholesky::Pair;
 using Lists = std::vector<std::vector<std::uint32_t>>;
 
 /// Returns the elimination order, which keeps L sparse: entry i is the row of blocks that is eliminated as number i.
-std::vector<std::uint32_t> thin_order(std::size_t rows, std::span<const Pair> pairs) {
+std::vector<std::uint32_t> elimination_order(std::size_t rows, std::span<const Pair> pairs) {
     using Pattern = Eigen::SparseMatrix<double>;
     std::vector<Eigen::Triplet<double>> slots;
     for (std::size_t i = 0; i < rows; ++i) slots.emplace_back(static_cast<int>(i), static_cast<int>(i), 1.0);
@@ -113,8 +113,8 @@ struct BlockCholesky::Structure {
 
 BlockCholesky::BlockCholesky(std::size_t rows, std::span<const Pair> pairs) {
     std::vector<std::uint32_t> order(rows);
-    const std::vector<std::uint32_t> thin = thin_order(rows, pairs);
-    for (std::uint32_t k = 0; k < rows; ++k) order[thin[k]] = k;
+    const std::vector<std::uint32_t> eliminated = elimination_order(rows, pairs);
+    for (std::uint32_t k = 0; k < rows; ++k) order[eliminated[k]] = k;
     const std::vector<std::uint32_t> slot = postorder(parents_of(later_neighbours(order, pairs)));
     for (std::uint32_t& k : order) k = slot[k];
     order_ = std::move(order);
@@ -145,8 +145,8 @@ void BlockCholesky::make_fronts(const Structure& structure) {
             front_of_[k] = static_cast<std::uint32_t>(fronts_.size());
             if (structure.parent[k] != k + 1) break;
             const double next = 1.0 + static_cast<double>(structure.below[k + 1].size());
-            const double held = next * (count + 1.0) + 0.5 * count * (count + 1.0);
-            if (held - filled - next > kMostZeros * held) break;
+            const double stored = next * (count + 1.0) + 0.5 * count * (count + 1.0);
+            if (stored - filled - next > kMostZeros * stored) break;
         }
         ++k;
         front.count = k - front.begin;
@@ -161,13 +161,13 @@ void BlockCholesky::make_fronts(const Structure& structure) {
         if (front.below.empty()) continue;
         Front& parent = fronts_[front_of_[front.below.front()]];
         parent.children.push_back(f);
-        for (const std::uint32_t row : front.below) front.slots.push_back(place_in(parent, row));
+        for (const std::uint32_t row : front.below) front.slots.push_back(index_in(parent, row));
     }
     values_.resize(values);
 }
 
 /// Returns the index of a row of blocks in a front.
-std::uint32_t BlockCholesky::place_in(const Front& front, std::uint32_t row) {
+std::uint32_t BlockCholesky::index_in(const Front& front, std::uint32_t row) {
     if (row < front.begin + front.count) return row - front.begin;
     const auto found = std::lower_bound(front.below.begin(), front.below.end(), row);
     return front.count + static_cast<std::uint32_t>(found - front.below.begin());
@@ -181,7 +181,7 @@ void BlockCholesky::place_entries(std::span<const Pair> pairs) {
         const std::uint32_t second = order_[pairs[k].second];
         const auto [low, high] = std::minmax(first, second);
         Front& front = fronts_[front_of_[low]];
-        front.entries.push_back({k, place_in(front, high), low - front.begin, first == low});
+        front.entries.push_back({k, index_in(front, high), low - front.begin, first == low});
     }
 }
 
@@ -200,7 +200,7 @@ bool BlockCholesky::factorize(const BlockMatrix& matrix) {
     for (const Front& front : fronts_) {
         assemble(front, matrix);
         if (!eliminate(front_values_, front.rows(), front.columns())) return false;
-        keep(front);
+        store_columns(front);
     }
     return true;
 }
@@ -244,7 +244,7 @@ void BlockCholesky::add_update(const Front& child, std::size_t rows) {
 }
 
 /// Stores the eliminated columns of L, and pushes the update for the parent on the stack.
-void BlockCholesky::keep(const Front& front) {
+void BlockCholesky::store_columns(const Front& front) {
     const std::size_t rows = front.rows();
     const std::size_t columns = front.columns();
     std::copy_n(front_values_.begin(), rows * columns, values_.begin() + static_cast<std::ptrdiff_t>(front.values));

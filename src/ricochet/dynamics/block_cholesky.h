@@ -72,10 +72,10 @@ private:
     struct Structure;
     void make_fronts(const Structure& structure);
     void place_entries(std::span<const Pair> pairs);
-    [[nodiscard]] static std::uint32_t place_in(const Front& front, std::uint32_t row);
+    [[nodiscard]] static std::uint32_t index_in(const Front& front, std::uint32_t row);
     void assemble(const Front& front, const BlockMatrix& matrix);
     void add_update(const Front& child, std::size_t rows);
-    void keep(const Front& front);
+    void store_columns(const Front& front);
     void solve_forwards(const Front& front, std::vector<double>& x) const;
     void solve_backwards(const Front& front, std::vector<double>& x) const;
 

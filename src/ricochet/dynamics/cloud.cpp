@@ -61,7 +61,7 @@ double cloud_turn(const CloudRule& rule, double duration) {
 }
 
 PhaseState CloudMember::offset_at(double time) const {
-    const PhaseState about = turned_offset(rule_, place_, time - birth_time_);
+    const PhaseState about = turned_offset(rule_, offset_, time - birth_time_);
     const double s = std::clamp(time - begin_, 0.0, parent_.duration);
     return {parent_.position(s) + about.position, parent_.velocity(s) + about.velocity};
 }
@@ -86,7 +86,7 @@ Vec3 CloudMember::acceleration(const ForceInput& input) const {
     const double s = std::clamp(input.time - begin_, 0.0, parent_.duration);
     Vec3 sum = 2.0 * parent_.c[2] + (6.0 * s) * parent_.c[3];
     if (rule_.turning != Vec3{}) {
-        const PhaseState about = turned_offset(rule_, place_, input.time - birth_time_);
+        const PhaseState about = turned_offset(rule_, offset_, input.time - birth_time_);
         sum += cross(rule_.turning, about.velocity);
     }
     if (rule_.pull == 0.0 && rule_.damping == 0.0) return sum;

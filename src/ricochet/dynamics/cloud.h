@@ -24,7 +24,7 @@ public:
     /// parent: path of the parent. begin: start time of that path, in s. offset: target position relative to the parent
     /// at the child's birth, in m.
     CloudMember(const CloudRule& rule, const Path& parent, double begin, const Vec3& offset, double birth_time)
-        : rule_(rule), parent_(parent), begin_(begin), place_(offset), birth_time_(birth_time) {}
+        : rule_(rule), parent_(parent), begin_(begin), offset_(offset), birth_time_(birth_time) {}
 
     /// Returns position and velocity of the target in the world at a time, in s.
     [[nodiscard]] PhaseState offset_at(double time) const;
@@ -39,7 +39,7 @@ private:
     CloudRule rule_;
     Path parent_;
     double begin_;
-    Vec3 place_;
+    Vec3 offset_;
     double birth_time_;
 };
 

@@ -84,7 +84,7 @@ FlownPiece piece_of(const Flight& flight) {
 }
 
 Vec3 CoupledMember::acceleration(const ForceInput& input) const {
-    if (system_ == nullptr) return held_;
+    if (system_ == nullptr) return constant_acceleration_;
     const auto state_of = [&](std::size_t k) {
         if (k == member_) return PhaseState{input.position, input.velocity};
         const Flight& plan = (*plans_)[k];

@@ -42,8 +42,8 @@ struct MutualPull {
 class CoupledMember final : public Coupling {
 public:
     CoupledMember() = default;
-    /// Uses the constant acceleration `held`, in m/s^2.
-    explicit CoupledMember(const Vec3& held) : held_(held) {}
+    /// Uses a constant acceleration, in m/s^2.
+    explicit CoupledMember(const Vec3& constant_acceleration) : constant_acceleration_(constant_acceleration) {}
     /// Computes the acceleration from `plans`, the planned flights of all members. Both references must outlive the
     /// object.
     CoupledMember(const ParticleSystem& system, const std::vector<Flight>& plans, std::size_t member,
@@ -54,7 +54,7 @@ public:
     [[nodiscard]] bool varies() const override { return system_ != nullptr; }
 
 private:
-    Vec3 held_;
+    Vec3 constant_acceleration_;
     const ParticleSystem* system_ = nullptr;
     const std::vector<Flight>* plans_ = nullptr;
     std::size_t member_ = 0;

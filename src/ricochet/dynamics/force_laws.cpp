@@ -370,7 +370,7 @@ std::unique_ptr<Force> drag_of(const Law& law, FlowPointer flow) {
 
 bool is_drag_law(const Force& force) { return dynamic_cast<const AnyDrag*>(&force) != nullptr; }
 
-std::optional<EnergyLaw> energy_law_of_law(const Force& force) {
+std::optional<EnergyLaw> energy_law_of_global_force(const Force& force) {
     EnergyLaw law;
     if (dynamic_cast<const Buoyancy*>(&force) != nullptr) return law;
     law.is_dissipative = is_drag_law(force);

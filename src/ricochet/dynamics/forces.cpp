@@ -92,7 +92,7 @@ bool is_drag(const Force& force) {
 std::optional<EnergyLaw> energy_law_of(const Force& force) {
     if (force.common_acceleration()) return EnergyLaw{};
     const auto* const on_some = dynamic_cast<const ForceOnSome*>(&force);
-    return on_some ? energy_law_of(on_some->force()) : energy_law_of_law(force);
+    return on_some ? energy_law_of(on_some->force()) : energy_law_of_global_force(force);
 }
 
 std::unique_ptr<Force> make_gravity(const Vec3& acceleration) {

@@ -17,10 +17,10 @@ constexpr double kStefanBoltzmann = 5.670374419e-8;
 /// even an arbitrarily hot body is less than (3 b t)^(-1/3) above the ambient temperature. Clamping the start
 /// difference to this limit therefore does not change any digit of the result. Local: a limit whose effect is far below
 /// the last digit.
-constexpr double kForgotten = 1e6;
+constexpr double kStartDifferenceLimit = 1e6;
 
 /// e^-x is 0 in double precision for x above this value. Local: a limit from the range of doubles.
-constexpr double kGone = 750.0;
+constexpr double kUnderflowExponent = 750.0;
 
 /// Decay of the difference d = T - Ta: d' = -g d with g = a + b (T^2 + Ta^2) (T + Ta). The integrated variable is w =
 /// log(d(0) / d), with w' = g. g is smooth and never negative. A long step is therefore inaccurate, but never unstable.
@@ -34,7 +34,7 @@ public:
         double w = 0.0;
         double done = 0.0;
         double h = duration;
-        while (done < duration && w < kGone) {
+        while (done < duration && w < kUnderflowExponent) {
             h = std::min(h, duration - done);
             const double once = step(w, h);
             const double twice = step(step(w, 0.5 * h), 0.5 * h);
@@ -99,15 +99,15 @@ double cooled(double temperature, double ambient, const CoolingRates& rates, dou
         return between(temperature, ambient, difference * portable_exp(-rates.convection * duration));
     }
     const double lasting = portable_pow(3.0 * rates.radiation * duration, -1.0 / 3.0);  // in K
-    difference = std::min(difference, kForgotten * lasting);
+    difference = std::min(difference, kStartDifferenceLimit * lasting);
     if (ambient == 0.0 && rates.convection == 0.0) {
         const double ratio = difference / lasting;
         return difference * portable_pow(1.0 + ratio * ratio * ratio, -1.0 / 3.0);
     }
     const Decay decay(difference, ambient, rates);
-    const double slowest = std::min(decay.rate(0.0), decay.rate(kGone));
+    const double slowest = std::min(decay.rate(0.0), decay.rate(kUnderflowExponent));
     // In these cases the remaining difference is 0. The rates of very light bodies could overflow in the integration.
-    if (!std::isfinite(decay.rate(0.0)) || slowest * duration >= kGone) return ambient;
+    if (!std::isfinite(decay.rate(0.0)) || slowest * duration >= kUnderflowExponent) return ambient;
     return between(temperature, ambient, difference * portable_exp(-decay.after(duration)));
 }
 

@@ -140,7 +140,7 @@ private:
         double across = h2 * spring.stiffness * (1.0 - spring.rest_length / now);
         const double then = length(x0[bond.first] - x0[bond.second]);
         across += state_.duration * spring.damping * (1.0 - then / now);
-        if (across < 0.0) across *= kind_.pressure;
+        if (across < 0.0) across *= kind_.compression_stiffness;
         for (std::size_t row = 0; row < 3; ++row) {
             for (std::size_t column = 0; column < 3; ++column) {
                 const double outer = u[static_cast<int>(row)] * u[static_cast<int>(column)];

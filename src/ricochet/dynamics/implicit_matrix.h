@@ -16,7 +16,7 @@ namespace ricochet {
 struct MatrixKind {
     /// Fraction of the negative transverse stiffness of compressed springs in the matrix. With 0 the matrix is positive
     /// definite, with 1 it is exact.
-    double pressure = 1.0;
+    double compression_stiffness = 1.0;
     bool is_symmetric = false;  ///< true: only the symmetric part of the derivative of forces on single members is used
 };
 

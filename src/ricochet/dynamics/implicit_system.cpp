@@ -26,8 +26,8 @@ constexpr int kMostCuts = 12;
 /// is checked.
 constexpr int kMostSteps = 80;
 
-/// Smallest value of MatrixKind::pressure that is tried before 0. Local: a step of this search.
-constexpr double kLeastPressure = 0.2;
+/// Smallest value of MatrixKind::compression_stiffness that is tried before 0. Local: a step of this search.
+constexpr double kLeastCompressionStiffness = 0.2;
 
 /// Correction, relative to the largest speed, below which Newton's method is expected to converge without a decrease of
 /// the energy. Local, because kNewtonTolerance decides when the equations are solved.
@@ -123,11 +123,13 @@ private:
     /// leaves the matrix positive definite. The next call starts with a larger fraction.
     bool factorize_definite() {
         for (;;) {
-            if (solver_.factorize(matrix({pressure_, true}))) break;
-            if (pressure_ == 0.0) return false;
-            pressure_ = pressure_ > kLeastPressure ? 0.5 * pressure_ : 0.0;
+            if (solver_.factorize(matrix({compression_stiffness_, true}))) break;
+            if (compression_stiffness_ == 0.0) return false;
+            compression_stiffness_ =
+                compression_stiffness_ > kLeastCompressionStiffness ? 0.5 * compression_stiffness_ : 0.0;
         }
-        pressure_ = std::min(1.0, std::max(2.0 * kLeastPressure, 2.0 * pressure_));
+        compression_stiffness_ =
+            std::min(1.0, std::max(2.0 * kLeastCompressionStiffness, 2.0 * compression_stiffness_));
         return true;
     }
 
@@ -281,8 +283,8 @@ private:
     std::vector<Vec3> forces_;  // sums of all forces, in N
     BlockCholesky solver_;
     Vector right_;
-    double energy_ = 0.0;    // energy of the current iterate, in J
-    double pressure_ = 1.0;  // MatrixKind::pressure of the next matrix
+    double energy_ = 0.0;                 // energy of the current iterate, in J
+    double compression_stiffness_ = 1.0;  // MatrixKind::compression_stiffness of the next matrix
 
     bool is_symmetric_;  // true if the exact matrix is symmetric
 };

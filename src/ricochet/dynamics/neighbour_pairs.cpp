@@ -26,7 +26,7 @@ constexpr double kLarger = 0.02;
 constexpr std::size_t kMany = 512;
 
 /// Number of searches without enlargement after a search whose enlarged boxes were not reused.
-constexpr int kSearchesAsTheyAre = 16;
+constexpr int kUnenlargedSearches = 16;
 
 /// Boxes or pairs per unit of parallel work.
 constexpr std::size_t kNeighbourPairsBlock = 8192;
@@ -36,7 +36,7 @@ bool comes_before(const NeighbourPair& a, const NeighbourPair& b) {
 }
 
 /// Returns the box. An empty box is replaced by the default box, which overlaps no box.
-Box3 as_asked(const Box3& box) { return box.empty() ? Box3{} : box; }
+Box3 box_or_default(const Box3& box) { return box.empty() ? Box3{} : box; }
 
 Box3 larger(const Box3& box) {
     const Vec3 size = box.size();
@@ -80,19 +80,19 @@ std::size_t blocks_of(std::size_t count) { return (count + kNeighbourPairsBlock 
 
 const std::vector<NeighbourPair>& NeighbourPairs::find(std::span<const Box3> boxes) {
     if (!take_later(boxes)) {
-        find_anew(boxes);
+        rebuild(boxes);
         return pairs_;
     }
     was_useful_ = true;
     take(boxes);
-    take_kept();
+    select_kept_pairs();
     add_pairs_of(later_);
     return pairs_;
 }
 
 void NeighbourPairs::take(std::span<const Box3> boxes) {
     boxes_.resize(boxes.size());
-    std::transform(boxes.begin(), boxes.end(), boxes_.begin(), as_asked);
+    std::transform(boxes.begin(), boxes.end(), boxes_.begin(), box_or_default);
 }
 
 /// Collects in later_ the boxes that have left their kept boxes. Returns false if there are too many of them.
@@ -106,10 +106,10 @@ bool NeighbourPairs::take_later(std::span<const Box3> boxes) {
     return later_.size() <= most;
 }
 
-void NeighbourPairs::find_anew(std::span<const Box3> boxes) {
-    if (is_larger_ && !was_useful_) searches_as_they_are_ = kSearchesAsTheyAre;
-    is_larger_ = boxes.size() >= kMany && searches_as_they_are_ == 0;
-    if (searches_as_they_are_ > 0) --searches_as_they_are_;
+void NeighbourPairs::rebuild(std::span<const Box3> boxes) {
+    if (is_larger_ && !was_useful_) unenlarged_searches_ = kUnenlargedSearches;
+    is_larger_ = boxes.size() >= kMany && unenlarged_searches_ == 0;
+    if (unenlarged_searches_ > 0) --unenlarged_searches_;
     was_useful_ = false;
     take(boxes);
     kept_ = boxes_;
@@ -119,7 +119,7 @@ void NeighbourPairs::find_anew(std::span<const Box3> boxes) {
     static_cast<void>(later_grid_.find_pairs({}));
     is_changed_.assign(boxes.size(), 0);
     if (is_larger_) {
-        take_kept();
+        select_kept_pairs();
     } else {
         is_later_.assign(boxes.size(), 0);
         pairs_ = grid_.pairs();
@@ -127,7 +127,7 @@ void NeighbourPairs::find_anew(std::span<const Box3> boxes) {
 }
 
 /// Sets pairs_ to the pairs of kept boxes whose current boxes overlap, except pairs with a box in later_.
-void NeighbourPairs::take_kept() {
+void NeighbourPairs::select_kept_pairs() {
     is_later_.assign(boxes_.size(), 0);
     for (const std::uint32_t k : later_) is_later_[k] = 1;
     const std::vector<NeighbourPair>& kept = grid_.pairs();
@@ -151,7 +151,7 @@ const std::vector<NeighbourPair>& NeighbourPairs::update(std::span<const Box3> b
     if (changed.empty()) return pairs_;
     if (changed.size() + later_.size() > boxes.size() / kFew) return find(boxes);
     for (const std::uint32_t k : changed) {
-        boxes_[k] = as_asked(boxes[k]);
+        boxes_[k] = box_or_default(boxes[k]);
         if (is_later_[k] == 0) later_.push_back(k);
         is_later_[k] = is_changed_[k] = 1;
     }

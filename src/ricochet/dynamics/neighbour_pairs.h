@@ -29,16 +29,16 @@ public:
 private:
     void take(std::span<const Box3> boxes);
     [[nodiscard]] bool take_later(std::span<const Box3> boxes);
-    void find_anew(std::span<const Box3> boxes);
-    void take_kept();
+    void rebuild(std::span<const Box3> boxes);
+    void select_kept_pairs();
     void add_pairs_of(std::span<const std::uint32_t> some);
 
-    NeighbourGrid grid_;            // grid of the kept boxes
-    std::vector<Box3> kept_;        // enlarged copy of every box
-    std::vector<Box3> boxes_;       // all boxes of the last call
-    bool is_larger_ = false;        // true if the kept boxes are enlarged
-    bool was_useful_ = false;       // true if the kept boxes have been reused
-    int searches_as_they_are_ = 0;  // number of searches before boxes are enlarged again
+    NeighbourGrid grid_;           // grid of the kept boxes
+    std::vector<Box3> kept_;       // enlarged copy of every box
+    std::vector<Box3> boxes_;      // all boxes of the last call
+    bool is_larger_ = false;       // true if the kept boxes are enlarged
+    bool was_useful_ = false;      // true if the kept boxes have been reused
+    int unenlarged_searches_ = 0;  // number of searches before boxes are enlarged again
     NeighbourGrid later_grid_;
     std::vector<std::uint32_t> later_;      // indices of the boxes in later_grid_, ascending
     std::vector<std::uint8_t> is_later_;    // for every box, 1 if its kept box is out of date

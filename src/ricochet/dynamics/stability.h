@@ -49,7 +49,7 @@ struct EnergyLaw {
 /// Returns the energy law of a force; nothing for forces without a potential and for user-defined forces.
 [[nodiscard]] std::optional<EnergyLaw> energy_law_of(const Force& force);
 /// Returns the energy law of a force that acts on all particles.
-[[nodiscard]] std::optional<EnergyLaw> energy_law_of_law(const Force& force);
+[[nodiscard]] std::optional<EnergyLaw> energy_law_of_global_force(const Force& force);
 
 /// Largest coordinates, in m, and velocity components, in m/s, at which forces and flows must be finite. Integrators
 /// may try states beyond this limit, at which powers overflow even in valid forces. Local: a limit of input values.

@@ -58,13 +58,13 @@ public:
 
     /// Calls found(collider, triangle or nothing) for every surface that overlaps a sphere about a point, in any order.
     /// Overlaps of up to 1e-12 of the sphere's radius and coordinates are ignored. largest: largest world coordinate of
-    /// the sphere's centre on its path to the point, in m. way: length of this path, in m. On the path, the centre's
-    /// coordinates in the frame exceed the coordinates of the point by at most this length.
+    /// the sphere's centre on its path to the point, in m. path_length: length of this path, in m. On the path, the
+    /// centre's coordinates in the frame exceed the coordinates of the point by at most this length.
     template <class Found>
-    void visit_overlapped(const Vec3& world, double time, double radius, double largest, double way,
+    void visit_overlapped(const Vec3& world, double time, double radius, double largest, double path_length,
                           const Found& found) const {
         const Vec3 p = local_position(world, time);
-        if (frame_) largest = std::max(largest, max_abs(p) + way);
+        if (frame_) largest = std::max(largest, max_abs(p) + path_length);
         const double least = radius - sphere_tolerance(radius, largest);
         if (!(least > 0.0)) return;
         for (const auto& [collider, plane] : planes_) {

@@ -24,7 +24,7 @@ constexpr double kRoughError = 0x1p-49;
 
 /// Margin for rounding around the box of a shape, relative to the size and position of the box. Local: an error bound
 /// of the formulas in this file.
-constexpr double kBoxSlack = 1e-12;
+constexpr double kShapeBoxMargin = 1e-12;
 
 /// Number of bisection steps for the Lagrange multiplier. Further steps would not change a double.
 constexpr int kHalvings = 120;
@@ -108,7 +108,7 @@ CheckedShape::Impl::Impl(const AffineMap& map, bool is_cylinder)
                          static_cast<double>(axes[i][2])};
         reach += half[i] * abs(rough_axes[i]);
     }
-    reach += kBoxSlack * (reach + abs(center));
+    reach += kShapeBoxMargin * (reach + abs(center));
     box.include(center - reach);
     box.include(center + reach);
 }

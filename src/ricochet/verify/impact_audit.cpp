@@ -39,7 +39,7 @@ Long energy(const MetSphere& sphere, const RecordedMotion& motion) {
 
 class Audit {
 public:
-    Audit(const PairMeeting& meeting, const ImpactAudit& books) : meeting_(meeting), books_(books) {}
+    Audit(const PairMeeting& meeting, const ImpactAudit& rules) : meeting_(meeting), rules_(rules) {}
 
     [[nodiscard]] bool is_wrong() const {
         for (const MetContact& contact : meeting_.contacts) {
@@ -66,8 +66,8 @@ private:
     }
 
     [[nodiscard]] ImpactAudit::Pair law(const MetContact& contact) const {
-        if (books_.materials == 0) return {books_.restitution, books_.friction, books_.rolling_friction};
-        return books_.by_materials[first(contact).material * books_.materials + second(contact).material];
+        if (rules_.materials == 0) return {rules_.restitution, rules_.friction, rules_.rolling_friction};
+        return rules_.by_materials[first(contact).material * rules_.materials + second(contact).material];
     }
     template <class Holds>
     [[nodiscard]] bool holds_for_all(const Holds& holds) const {
@@ -80,7 +80,7 @@ private:
         const MetSphere& b = second(contact);
         const Long distance = size(between(contact));
         if (!(distance > 0) || !std::isfinite(static_cast<double>(distance))) return true;
-        if (!books_.has_exact_paths) return false;
+        if (!rules_.has_exact_paths) return false;
         // Local: a tolerance of the audit, which does not affect the run.
         constexpr double kUlps = 64.0;
         const double tick = kUlps * std::numeric_limits<double>::epsilon();
@@ -125,8 +125,8 @@ private:
         const bool is_alone = meeting_.contacts.size() == 1;
         if (approach <= rounding || (!is_alone && rubs())) return false;
         if (first(contact).is_fixed && second(contact).is_fixed) return true;
-        if (restitution < 1.0 && std::fabs(target - books_.resting_speed) <= rounding) return false;
-        if (restitution < 1.0 && target < books_.resting_speed) target = 0;
+        if (restitution < 1.0 && std::fabs(target - rules_.resting_speed) <= rounding) return false;
+        if (restitution < 1.0 && target < rules_.resting_speed) target = 0;
         const Long more = departure(contact, true) - target;
         const Long allowed = is_alone ? rounding : 1000 * rounding;
         return is_alone ? !(std::fabs(more) <= allowed) : !(more >= -allowed);
@@ -203,11 +203,11 @@ private:
     }
 
     const PairMeeting& meeting_;
-    const ImpactAudit& books_;
+    const ImpactAudit& rules_;
 };
 
 }  // namespace
 
-bool is_wrong(const PairMeeting& meeting, const ImpactAudit& books) { return Audit(meeting, books).is_wrong(); }
+bool is_wrong(const PairMeeting& meeting, const ImpactAudit& rules) { return Audit(meeting, rules).is_wrong(); }
 
 }  // namespace ricochet::verify

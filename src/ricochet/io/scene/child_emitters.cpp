@@ -61,7 +61,7 @@ void find_parents(const SceneContext& context, SimulationSetup& setup) {
 
 // Warns of emitters that are among their own ancestors. An emitter in such a cycle needs parents from the cycle, so
 // none of its emitters ever emits.
-void warn_of_circles(const SceneContext& context, const SimulationSetup& setup) {
+void warn_of_parent_cycles(const SceneContext& context, const SimulationSetup& setup) {
     const std::vector<ObjectView> views = context.objects("emitters");
     for (std::size_t k = 0; k < views.size() && !context.failed(); ++k) {
         std::size_t ancestor = k;
@@ -75,7 +75,7 @@ void warn_of_circles(const SceneContext& context, const SimulationSetup& setup) 
 }
 
 // Reports two emitters that distribute the mass of the same parents at the same event.
-void check_shares(const SceneContext& context, const SimulationSetup& setup) {
+void check_mass_distribution(const SceneContext& context, const SimulationSetup& setup) {
     const std::vector<ObjectView> views = context.objects("emitters");
     std::set<std::pair<std::uint32_t, BirthEvent>> taken;
     for (std::size_t k = 0; k < views.size(); ++k) {
@@ -205,8 +205,8 @@ ParentRule rule_of(const SceneContext& context, const ObjectView& view, const Em
 
 void check_parents(const SceneContext& context, SimulationSetup& setup) {
     find_parents(context, setup);
-    warn_of_circles(context, setup);
-    check_shares(context, setup);
+    warn_of_parent_cycles(context, setup);
+    check_mass_distribution(context, setup);
 }
 
 void check_clouds(const SceneContext& context, const SimulationSetup& setup) {

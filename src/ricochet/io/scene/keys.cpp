@@ -137,7 +137,7 @@ std::string expectation(const KeySpec& key) {
     return "";
 }
 
-std::string not_built(const std::string& what) {
+std::string unsupported_message(const std::string& what) {
     return what + " is part of the scene format but not built in this version";
 }
 

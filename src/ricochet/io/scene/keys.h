@@ -111,7 +111,7 @@ struct ObjectSpec {
 /// Returns a range in words, for example `>= 0 and <= 180`. Empty if every finite number is allowed.
 [[nodiscard]] std::string range_words(const Range& range);
 /// Returns the message for a key that the format reserves but this version does not support.
-[[nodiscard]] std::string not_built(const std::string& what);
+[[nodiscard]] std::string unsupported_message(const std::string& what);
 
 /// Reports everything in the document that the tables do not allow. These are unknown keys (with the nearest known
 /// names), wrong types, values out of range, missing keys, and reserved features. Replaces every refused value by null.

@@ -333,7 +333,7 @@ ParticleTable read_particle_table(const std::filesystem::path& path, std::vector
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
     if (ending == ".ply" || ending == ".vtp") {
-        throw InputError(not_built(fmt::format("a {} file of particles", ending)) + ", expected a .csv file");
+        throw InputError(unsupported_message(fmt::format("a {} file of particles", ending)) + ", expected a .csv file");
     }
     if (ending != ".csv") throw InputError(fmt::format("found {}, expected a .csv file", path.string()));
     const std::string text = read_bytes(path, kLargestTable);

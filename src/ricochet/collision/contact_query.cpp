@@ -73,8 +73,9 @@ bool NearSurfaces::shape_blocks(const CollisionWorld::ShapeSurface& shape, const
                                 double tolerance) const {
     if (!shape.shape.segment_is_clear(p, q)) return true;
     const auto& overlapped = scratch_->overlapped;
-    const bool is_held = std::any_of(overlapped.begin(), overlapped.end(), [&](SurfaceId s) { return shape.owns(s); });
-    if (margins_.radius == 0.0 || is_held) return false;
+    const bool is_already_overlapped =
+        std::any_of(overlapped.begin(), overlapped.end(), [&](SurfaceId s) { return shape.owns(s); });
+    if (margins_.radius == 0.0 || is_already_overlapped) return false;
     return shape.shape.distance_to_segment(p, q) < margins_.radius - tolerance;
 }
 

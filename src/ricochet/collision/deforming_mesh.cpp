@@ -118,11 +118,11 @@ void DeformingMesh::begin_step(double begin, double end, std::vector<Box3>& boxe
     moments.push_back(motion_->at(end));
     at_begin_ = moments.front();
     at_end_ = moments.back();
-    const bool stands = std::all_of(moments.begin(), moments.end(), [&](const MeshMoment& moment) {
+    const bool is_at_rest = std::all_of(moments.begin(), moments.end(), [&](const MeshMoment& moment) {
         return moment.duration == 0.0 && moment.from.data() == moments[0].from.data();
     });
-    const Vec3* const stands_at = stands ? moments[0].from.data() : nullptr;
-    if (std::exchange(stands_at_, stands_at) == stands_at && stands) return;
+    const Vec3* const resting_vertices = is_at_rest ? moments[0].from.data() : nullptr;
+    if (std::exchange(resting_vertices_, resting_vertices) == resting_vertices && is_at_rest) return;
     const std::size_t count = motion_->vertex_count();
     boxes.resize(count);
     std::vector<double> largest((count + kVerticesInBlock - 1) / kVerticesInBlock, 0.0);

@@ -107,7 +107,7 @@ private:
     BoxTree tree_;
     double offset_ = 0.0;
     /// Vertex positions if the mesh is at rest in the step of `tree_`: before its first key or after its last one.
-    const Vec3* stands_at_ = nullptr;
+    const Vec3* resting_vertices_ = nullptr;
 };
 
 }  // namespace ricochet

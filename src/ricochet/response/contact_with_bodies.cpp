@@ -49,9 +49,9 @@ bool releases(const ResponseRules& rules, const FrameRules& frame_rules, const M
     const double jump = length(frame.in_frame(motion, particle.state.time).velocity);
     if (!rules.bodies.is_dynamic(body)) return jump > rules.settings.resting_speed;
     const Mobility mobility = rules.bodies.mobility(body, particle.state.time);
-    const Vec3 push = normal_in_world(rules, particle, particle.contact.surfaces[0]);
-    const double weight = particle.state.mass * dot(mobility.change_at(particle.state.position, push), push);
-    return jump * std::max(1.0, weight) > slowest_rebound_from(rules, frame_rules, particle, body, push);
+    const Vec3 normal = normal_in_world(rules, particle, particle.contact.surfaces[0]);
+    const double mass_ratio = particle.state.mass * dot(mobility.change_at(particle.state.position, normal), normal);
+    return jump * std::max(1.0, mass_ratio) > slowest_rebound_from(rules, frame_rules, particle, body, normal);
 }
 
 double slowest_rebound(const ResponseRules& rules, const FrameRules& frame_rules, const MovingParticle& particle,
@@ -64,8 +64,8 @@ double slowest_rebound(const ResponseRules& rules, const FrameRules& frame_rules
     return slow;
 }
 
-std::optional<double> speed_let_go(const ResponseRules& rules, const FrameRules& frame_rules,
-                                   const MovingParticle& particle, SurfaceId surface) {
+std::optional<double> release_speed_from(const ResponseRules& rules, const FrameRules& frame_rules,
+                                         const MovingParticle& particle, SurfaceId surface) {
     const BodyId body = rules.bodies.body_of(surface);
     if (!rules.bodies.is_dynamic(body)) return std::nullopt;
     const SeenFromBody seen(rules, frame_rules, particle, body);
@@ -77,7 +77,7 @@ std::optional<double> speed_let_go(const ResponseRules& rules, const FrameRules&
     return speed;
 }
 
-Contact supporting_part(const Contact& contact) {
+Contact supporting_surfaces(const Contact& contact) {
     Contact part = contact;
     part.count = 0;
     for (const ContactSurface& surface : contact.all()) {

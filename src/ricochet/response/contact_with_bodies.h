@@ -22,13 +22,13 @@ namespace ricochet {
                                      const MovingParticle& particle, const Contact& contact);
 
 /// Returns the surfaces of an impact that support the particle.
-[[nodiscard]] Contact supporting_part(const Contact& contact);
+[[nodiscard]] Contact supporting_surfaces(const Contact& contact);
 
 /// Returns the speed, in m/s, at which a particle leaves a dynamic body whose velocity jump has released it from a
 /// surface. Returns std::nullopt if the jump is larger than the forces of a time step can cause. A smaller jump is an
 /// effect of the time step, because contact loads act on a body at the end of a step. A larger jump means that an
 /// impact has thrown the particle off.
-[[nodiscard]] std::optional<double> speed_let_go(const ResponseRules& rules, const FrameRules& frame_rules,
-                                                 const MovingParticle& particle, SurfaceId surface);
+[[nodiscard]] std::optional<double> release_speed_from(const ResponseRules& rules, const FrameRules& frame_rules,
+                                                       const MovingParticle& particle, SurfaceId surface);
 
 }  // namespace ricochet

@@ -42,7 +42,7 @@ bool EventIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch, 
     scratch.record_flown = true;
     for (std::size_t m = 0; m < members.size(); ++m) predict(m);
     neighbours_.begin(boxes_);
-    if (!limit.may_press && presses()) {
+    if (!limit.allows_pressing && presses()) {
         scratch.record_flown = false;
         return false;
     }
@@ -55,7 +55,7 @@ bool EventIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch, 
         resolve(contacts, time);
     }
     scratch.record_flown = false;
-    if (exceeds(limit) || (!limit.may_sink && sinks())) return false;
+    if (exceeds(limit) || (!limit.allows_sinking && sinks())) return false;
     for (std::size_t m = 0; m < members.size(); ++m) commit(m);
     return true;
 }
@@ -124,7 +124,7 @@ void EventIsland::predict(std::size_t m) {
         return;
     }
     if (member.is_free) {
-        prediction.flown.assign(1, free_way(response_.rules(), member.moving.state, member.end));
+        prediction.flown.assign(1, free_piece(response_.rules(), member.moving.state, member.end));
         const Path& path = prediction.flown[0].path;
         boxes_[m] = grown(box_of(path, path.duration), member.radius());
         return;

@@ -74,8 +74,8 @@ struct IslandMember {
 struct ImpactLimit {
     std::size_t in_all = std::numeric_limits<std::size_t>::max();
     std::uint32_t of_each = std::numeric_limits<std::uint32_t>::max();  ///< impacts of one member
-    bool may_sink = true;   ///< false: the run is also aborted if forces drive members into each other
-    bool may_press = true;  ///< false: aborted at the start if forces press together two members that touch
+    bool allows_sinking = true;   ///< false: the run is also aborted if forces drive members into each other
+    bool allows_pressing = true;  ///< false: aborted at the start if forces press together two members that touch
 };
 
 /// Solves event-driven islands, one after another, and reuses its memory. For one thread.

@@ -6,7 +6,7 @@
 
 namespace ricochet {
 
-FlownPiece free_way(const ResponseRules& rules, const ForceInput& state, double end) {
+FlownPiece free_piece(const ResponseRules& rules, const ForceInput& state, double end) {
     const Flight flight = begin_flight(rules.settings.integrator, rules.forces, state, end - state.time);
     FlownPiece trajectory = piece_of(flight);
     trajectory.begin = state.time;

@@ -12,7 +12,7 @@ namespace ricochet {
 
 /// Returns the path of a sphere until `end`, in s. The sphere must certainly touch no wall and no other sphere until
 /// then.
-[[nodiscard]] FlownPiece free_way(const ResponseRules& rules, const ForceInput& state, double end);
+[[nodiscard]] FlownPiece free_piece(const ResponseRules& rules, const ForceInput& state, double end);
 /// Returns the time, in s, at which spheres on two paths first touch, or std::nullopt if they do not. distance:
 /// distance of their centres at contact, in m. slow: largest approach speed, in m/s, that does not count as a contact.
 [[nodiscard]] std::optional<double> first_meeting(std::span<const FlownPiece> first, std::span<const FlownPiece> second,

@@ -143,9 +143,9 @@ private:
     /// Returns the rounding error of twice_kinetic(), in m^2/s^2. The error is larger if surfaces press against each
     /// other.
     [[nodiscard]] double rounding(const ImpactResult& result) const {
-        double squared_pushes = twice_kinetic(before_, radius_);
-        for (const Vec3& velocity_change : result.velocity_change) squared_pushes += length_squared(velocity_change);
-        return kEnergyRounding * squared_pushes;
+        double squared_speeds = twice_kinetic(before_, radius_);
+        for (const Vec3& velocity_change : result.velocity_change) squared_speeds += length_squared(velocity_change);
+        return kEnergyRounding * squared_speeds;
     }
 
     [[nodiscard]] bool gains(const ImpactResult& result) const {

@@ -104,19 +104,19 @@ void lift_middle(const SurfaceGeometry& geometry, const ContactManifold& manifol
 }
 
 void ManifoldSurfaces::meet(std::optional<Contact>& contact) {
-    if (contact && goes_on_along(*contact)) contact.reset();
+    if (contact && continue_along(*contact)) contact.reset();
     if (contact) join_impact(*contact);
 }
 
 /// Returns true for a surface of the manifold, and for a continuation of such a surface: the next triangle of a plane,
 /// a seam, or a plane of another collider in the same position.
-bool ManifoldSurfaces::goes_on(const ContactSurface& surface) const {
+bool ManifoldSurfaces::is_continuation(const ContactSurface& surface) const {
     return geometry().world().owns(surface.surface) && manifold_.point_of(surface.normal).has_value();
 }
 
-bool ManifoldSurfaces::goes_on_along(const Contact& contact) {
+bool ManifoldSurfaces::continue_along(const Contact& contact) {
     const bool all = std::all_of(contact.all().begin(), contact.all().end(),
-                                 [&](const ContactSurface& surface) { return goes_on(surface); });
+                                 [&](const ContactSurface& surface) { return is_continuation(surface); });
     if (!all || ++seams_ > kMostSeams) return false;
     for (const ContactSurface& surface : contact.all()) manifold_.add(surface);
     crosses_seam_ = true;
@@ -125,7 +125,7 @@ bool ManifoldSurfaces::goes_on_along(const Contact& contact) {
 
 void ManifoldSurfaces::join_impact(Contact& contact) const {
     for (ContactSurface& surface : std::span(contact.surfaces).first(static_cast<std::size_t>(contact.count))) {
-        surface.is_support = surface.is_support || goes_on(surface);
+        surface.is_support = surface.is_support || is_continuation(surface);
     }
     for (std::size_t k = 0; k < manifold_.size() && contact.count < Contact::kMostSurfaces; ++k) {
         const SurfaceId surface = manifold_[k].surface;

@@ -54,8 +54,8 @@ private:
 
     void find_beside();
     [[nodiscard]] bool is_beyond_rim(SurfaceId surface, const Vec3& position) const;
-    [[nodiscard]] bool goes_on(const ContactSurface& surface) const;
-    [[nodiscard]] bool goes_on_along(const Contact& contact);
+    [[nodiscard]] bool is_continuation(const ContactSurface& surface) const;
+    [[nodiscard]] bool continue_along(const Contact& contact);
 
     [[nodiscard]] const SurfaceGeometry& geometry() const { return step_.geometry(); }
     [[nodiscard]] const ForceInput& state() const { return step_.state(); }

@@ -159,7 +159,7 @@ std::optional<Contact> ParticleMover::resume_among_bodies() {
     for (int turn = 0; turn < kMostTurns && contact_state.count > 0 && !next && step_.remaining() > 0.0; ++turn) {
         const BodyId body = bodies.body_of(contact_state.surfaces[0]);
         if (is_released_by_jump()) {
-            release_speed_ = speed_let_go(rules_, frame_rules_, particle_, contact_state.surfaces[0]);
+            release_speed_ = release_speed_from(rules_, frame_rules_, particle_, contact_state.surfaces[0]);
             particle_.contact = {};
             particle_.attachment.reset();
             break;
@@ -218,7 +218,7 @@ std::optional<Contact> ParticleMover::follow_in_frame_unsettled(BodyId body, Con
     }
     step_.leave(rules_, next ? &*next : nullptr);
     step_.end_substep();
-    if (is_released && was_supported) release_speed_ = speed_let_go(rules_, frame_rules_, particle_, support);
+    if (is_released && was_supported) release_speed_ = release_speed_from(rules_, frame_rules_, particle_, support);
     leave_flight();
     return next;
 }

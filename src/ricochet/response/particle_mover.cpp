@@ -184,7 +184,7 @@ std::optional<Contact> ParticleMover::begin_or_continue_contact(const Flight& fl
 /// Continues contact after an impact with the surfaces that have supported the particle, unless it separates from them.
 /// No landing takes place. At the end of a step, the surfaces are stored for the next step.
 std::optional<Contact> ParticleMover::continue_contact(const Flight& flight, const Contact& contact) {
-    const Contact supporting = supporting_part(contact);
+    const Contact supporting = supporting_surfaces(contact);
     if (supporting.count == 0) return std::nullopt;
     if (step_.remaining() > 0.0) return begin_contact(flight, supporting, {particle_.state.velocity, particle_.spin});
     ContactState contact_state;

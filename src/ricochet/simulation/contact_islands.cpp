@@ -45,9 +45,9 @@ ImpactLimit ContactIslands::impacts_before(const std::vector<IslandMember>& memb
     if (!parts_.may_be_contact_island()) return limit;
     limit.in_all =
         (parts_.materials.loses_energy() ? kMostImpactsPerSphere : kMostElasticImpactsPerSphere) * members.size();
-    limit.may_sink = false;
+    limit.allows_sinking = false;
     if (!parts_.materials.loses_energy()) return limit;
-    limit.may_press = false;
+    limit.allows_pressing = false;
     limit.of_each = parts_.settings.method == PairMethod::contacts ? 1 : kMostImpactsOfSphere;
     return limit;
 }

@@ -74,7 +74,7 @@ Box3 LoneMotion::reachable_box(std::uint32_t k) const {
 
 FlownPiece LoneMotion::free_path(std::uint32_t k) const {
     if (const Flight* const planned = parts_.coupled.flight_of(first_ + k)) return piece_of(*planned);
-    return free_way(parts_.response.rules(), parts_.store.force_input(first_ + k, step_.begin), step_.end);
+    return free_piece(parts_.response.rules(), parts_.store.force_input(first_ + k, step_.begin), step_.end);
 }
 
 Box3 LoneMotion::box_of_free(std::uint32_t k) const {

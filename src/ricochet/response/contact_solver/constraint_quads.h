@@ -123,16 +123,16 @@ RICOCHET_INLINE void store_changes(const QuadState& states, const FourOf<SolverS
     return rows;
 }
 
-RICOCHET_INLINE void store_push(const QuadImpulse& impulse, const FourOf<ContactConstraint>& to, std::size_t part) {
+RICOCHET_INLINE void store_impulse(const QuadImpulse& impulse, const FourOf<ContactConstraint>& to, std::size_t part) {
     std::array<Quad, kQuad> rows{impulse.normal, impulse.tangential.x, impulse.tangential.y, impulse.tangential.z};
     transpose(rows[0], rows[1], rows[2], rows[3]);
     for (std::size_t k = 0; k < kQuad; ++k) store(rows[k], part_of(to[k], part));
 }
 
 /// Stores the members that relax() changes.
-RICOCHET_INLINE void store_pushes(const QuadConstraint& rows, const FourOf<ContactConstraint>& to) {
-    store_push(rows.impulse, to, 2);
-    store_push(rows.direction, to, 3);
+RICOCHET_INLINE void store_impulses(const QuadConstraint& rows, const FourOf<ContactConstraint>& to) {
+    store_impulse(rows.impulse, to, 2);
+    store_impulse(rows.direction, to, 3);
 }
 
 }  // namespace ricochet

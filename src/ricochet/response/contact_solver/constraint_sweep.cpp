@@ -58,21 +58,21 @@ public:
     }
 
 private:
-    [[nodiscard]] RICOCHET_INLINE QuadBodies places_of(const FourOf<ContactConstraint>& rows) const {
-        QuadBodies places;
+    [[nodiscard]] RICOCHET_INLINE QuadBodies gather_bodies(const FourOf<ContactConstraint>& rows) const {
+        QuadBodies bodies;
         for (std::size_t k = 0; k < kQuad; ++k) {
-            places.rows[k] = rows[k];
-            places.a[k] = &swept_.states[rows[k]->a];
-            places.b[k] = &swept_.states[rows[k]->b];
+            bodies.rows[k] = rows[k];
+            bodies.a[k] = &swept_.states[rows[k]->a];
+            bodies.b[k] = &swept_.states[rows[k]->b];
         }
-        return places;
+        return bodies;
     }
 
     /// Appends the rows that are not idle, without branches, because branches would be mispredicted.
     RICOCHET_INLINE void find_work(std::size_t begin, std::size_t end) {
         for (; begin + kQuad <= end; begin += kQuad) {
             ContactConstraint* row = &swept_.rows[begin];
-            const QuadBodies at = places_of({row, row + 1, row + 2, row + 3});
+            const QuadBodies at = gather_bodies({row, row + 1, row + 2, row + 3});
             const QuadMask idle = ricochet::is_idle(load_rows(at.rows), load_states(at.a), load_states(at.b));
             for (std::size_t k = 0; k < kQuad; ++k) {
                 work_[count_] = at.rows[k];
@@ -86,12 +86,12 @@ private:
     }
 
     RICOCHET_INLINE void relax_four(ContactConstraint* const* work) {
-        const QuadBodies at = places_of({work[0], work[1], work[2], work[3]});
+        const QuadBodies at = gather_bodies({work[0], work[1], work[2], work[3]});
         QuadConstraint row = load_rows(at.rows);
         QuadState a = load_states(at.a);
         QuadState b = load_states(at.b);
         const RowChange<Quad> change = relax(row, factor_, a, b);
-        store_pushes(row, at.rows);
+        store_impulses(row, at.rows);
         store_changes(a, at.a);
         store_changes(b, at.b);
         most_.approach_squared = larger(most_.approach_squared, change.approach_squared);
@@ -147,14 +147,14 @@ private:
 }  // namespace
 
 std::span<const SweepVariant> sweep_variants() {
-    static constexpr std::array kWays{SweepVariant::one_by_one, SweepVariant::avx2, SweepVariant::avx512};
+    static constexpr std::array kVariants{SweepVariant::one_by_one, SweepVariant::avx2, SweepVariant::avx512};
 #if defined(__x86_64__)
     static const std::size_t count =
         __builtin_cpu_supports("avx512vl") != 0 ? 3 : (__builtin_cpu_supports("avx2") != 0 ? 2 : 1);
 #else
     constexpr std::size_t count = 1;
 #endif
-    return std::span(kWays).first(count);
+    return std::span(kVariants).first(count);
 }
 
 SweepChange sweep_rows(const SweptRows& swept, double factor, SweepVariant variant) {

@@ -72,7 +72,7 @@ bool DirectContactSolver::improve(const SolverSystem& parts, double tolerance) {
     parts_ = parts;
     number_unknowns();
     if (moving_ == 0) return false;
-    find_places();
+    find_block_indices();
     operations_left_ = kMostOperations;
     if (cholesky_.operations() > operations_left_) return false;
     begin_passes(kDefect * tolerance);
@@ -83,7 +83,7 @@ bool DirectContactSolver::improve(const SolverSystem& parts, double tolerance) {
         violated = update_multipliers();
         is_solved = is_balanced && violated <= kViolated * tolerance;
     }
-    hand_over();
+    compute_velocities();
     return is_solved;
 }
 
@@ -124,9 +124,9 @@ std::uint32_t DirectContactSolver::pair_of(std::uint32_t first, std::uint32_t se
 }
 
 /// Finds the matrix blocks of each row.
-void DirectContactSolver::find_places() {
+void DirectContactSolver::find_block_indices() {
     pairs_.clear();
-    places_.clear();
+    block_indices_.clear();
     const auto turning = static_cast<std::uint32_t>(moving_);
     for (const ContactConstraint& row : parts_.rows) {
         const std::uint32_t a = slots_[row.a];
@@ -143,7 +143,7 @@ void DirectContactSolver::find_places() {
         }
         if (both && (turns || row.rolling != ContactConstraint::kNone))
             slots.turnings = pair_of(turning + a, turning + b);
-        places_.push_back(slots);
+        block_indices_.push_back(slots);
     }
     cholesky_ = BlockCholesky(2 * moving_, pairs_);
 }
@@ -239,7 +239,7 @@ void DirectContactSolver::assemble() {
 void DirectContactSolver::add_row(std::size_t i) {
     const ContactConstraint& row = parts_.rows[i];
     const ImpulseResponse& response = responses_[i];
-    const BlockIndices& slots = places_[i];
+    const BlockIndices& slots = block_indices_[i];
     const std::uint32_t a = slots_[row.a];
     const std::uint32_t b = slots_[row.b];
     const double most = row.friction * response.normal;
@@ -279,8 +279,9 @@ void DirectContactSolver::add_rolling(std::size_t i) {
     };
     add_own(slots_[row.a], rolling.per_radius_a);
     add_own(slots_[row.b], rolling.per_radius_b);
-    if (places_[i].turnings != kFixed)
-        add(matrix_.between[places_[i].turnings], -stiffness * rolling.per_radius_a * rolling.per_radius_b, change);
+    if (block_indices_[i].turnings != kFixed)
+        add(matrix_.between[block_indices_[i].turnings], -stiffness * rolling.per_radius_a * rolling.per_radius_b,
+            change);
 }
 
 /// Finds the velocities at which the impulses of dampers and multipliers balance the changes of momentum. Returns false
@@ -372,7 +373,7 @@ double DirectContactSolver::update_multipliers() {
 
 /// Limits the impulses to the friction cone and computes the velocities from them, so that momentum is conserved to
 /// rounding.
-void DirectContactSolver::hand_over() {
+void DirectContactSolver::compute_velocities() {
     std::copy(parts_.before.begin(), parts_.before.end(), parts_.states.begin());
     for (ContactConstraint& row : parts_.rows) {
         row.impulse.tangential = shortened(row.impulse.tangential, row.friction * row.impulse.normal);

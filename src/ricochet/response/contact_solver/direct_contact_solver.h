@@ -62,7 +62,7 @@ private:
 
     void begin_passes(double most_defect);
     void number_unknowns();
-    void find_places();
+    void find_block_indices();
     [[nodiscard]] std::uint32_t pair_of(std::uint32_t first, std::uint32_t second);
     [[nodiscard]] ImpulseResponse response_to(std::size_t row) const;
     [[nodiscard]] double radius_of(std::size_t row) const;
@@ -76,7 +76,7 @@ private:
     [[nodiscard]] double slope_along(std::span<const double> direction) const;
     [[nodiscard]] bool search_along(std::span<const double> direction);
     [[nodiscard]] double update_multipliers();
-    void hand_over();
+    void compute_velocities();
 
     SolverSystem parts_;
     double heaviest_ = 0.0;  // in kg
@@ -85,7 +85,7 @@ private:
     bool is_smooth_ = true;             // true if the last Newton step had its full length
     std::vector<std::uint32_t> slots_;  // index of each state's velocity among the unknowns, or kFixed
     std::size_t moving_ = 0;            // number of bodies that are not fixed; turnings follow all velocities
-    std::vector<BlockIndices> places_;
+    std::vector<BlockIndices> block_indices_;
     std::vector<BlockCholesky::Pair> pairs_;
     BlockCholesky cholesky_;
     double operations_left_ = 0.0;  // budget of the remaining factorizations

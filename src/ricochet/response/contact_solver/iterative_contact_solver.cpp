@@ -44,7 +44,7 @@ SolverReport IterativeContactSolver::solve(std::span<SolverBody> bodies, std::sp
     }
     if (gains_.empty()) find_gains();
     remove_energy_gains(report);
-    hand_over(bodies);
+    write_back(bodies);
     return report;
 }
 
@@ -132,12 +132,13 @@ void IterativeContactSolver::add_rolling(const SolverContact& contact, std::span
     };
     rolling.per_radius_a = per_radius(row.a);
     rolling.per_radius_b = per_radius(row.b);
-    const auto looseness = [&](std::uint32_t body, double inverse_radius) {
+    const auto inverse_inertia_of = [&](std::uint32_t body, double inverse_radius) {
         return before_[body].inverse_inertia * inverse_radius * inverse_radius;
     };
-    const double loose = looseness(row.a, rolling.per_radius_a) + looseness(row.b, rolling.per_radius_b);
-    if (!(loose > 0.0)) return;
-    rolling.inertia = 1.0 / loose;
+    const double inverse_inertia =
+        inverse_inertia_of(row.a, rolling.per_radius_a) + inverse_inertia_of(row.b, rolling.per_radius_b);
+    if (!(inverse_inertia > 0.0)) return;
+    rolling.inertia = 1.0 / inverse_inertia;
     const Vec3& moment = contact.start.moment;
     rolling.moment = shortened(moment - dot(moment, row.normal) * row.normal, rolling.friction * row.impulse.normal);
     row.rolling = static_cast<std::uint32_t>(rolling_.size());

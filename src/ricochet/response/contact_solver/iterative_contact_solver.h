@@ -67,7 +67,7 @@ private:
     void rebound(std::span<const SolverContact> contacts, const SolverSettings& settings, SolverReport& report);
     void find_gains();
     void remove_energy_gains(SolverReport& report);
-    void hand_over(std::span<SolverBody> bodies);
+    void write_back(std::span<SolverBody> bodies);
 
     ContactColoring coloring_;
     std::vector<SolverState> before_;  // bodies, then walls, without contact impulses

@@ -136,7 +136,7 @@ void IterativeContactSolver::remove_energy_gains(SolverReport& report) {
     }
 }
 
-void IterativeContactSolver::hand_over(std::span<SolverBody> bodies) {
+void IterativeContactSolver::write_back(std::span<SolverBody> bodies) {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         bodies[i].velocity = states_[i].velocity;
         if (bodies[i].radius > 0.0) bodies[i].spin = states_[i].turning / bodies[i].radius;

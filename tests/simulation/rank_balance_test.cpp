@@ -18,32 +18,33 @@ namespace RICOCHET_FILE {
 using Work = std::vector<std::uint64_t>;
 
 /// Returns the work of each rank after all transfers.
-std::vector<double> after_gifts(const Work& work) {
+std::vector<double> after_transfers(const Work& work) {
     std::vector<double> after(work.begin(), work.end());
     for (std::size_t from = 0; from < work.size(); ++from) {
-        const RankTransfers gifts = gifts_of(from, work);
+        const RankTransfers transfers = transfers_of(from, work);
         for (std::size_t to = 0; to < work.size(); ++to) {
-            EXPECT_GE(gifts[to], 0.0);
-            after[from] -= gifts[to] * static_cast<double>(work[from]);
-            after[to] += gifts[to] * static_cast<double>(work[from]);
+            EXPECT_GE(transfers[to], 0.0);
+            after[from] -= transfers[to] * static_cast<double>(work[from]);
+            after[to] += transfers[to] * static_cast<double>(work[from]);
         }
     }
     return after;
 }
 
-TEST(RankTransfers, GiftsEqualiseTheWork) {
-    EXPECT_EQ(gifts_of(0, {300, 100}), (RankTransfers{0.0, 1.0 / 3.0}));
-    EXPECT_EQ(gifts_of(1, {300, 100}), (RankTransfers{0.0, 0.0}));
-    EXPECT_EQ(gifts_of(2, {0, 0, 900}), (RankTransfers{1.0 / 3.0, 1.0 / 3.0, 0.0}));
-    EXPECT_EQ(gifts_of(0, {5, 5, 5}), (RankTransfers{0.0, 0.0, 0.0}));
-    EXPECT_EQ(gifts_of(0, {0, 0}), (RankTransfers{0.0, 0.0}));
+TEST(RankTransfers, TransfersEqualiseTheWork) {
+    EXPECT_EQ(transfers_of(0, {300, 100}), (RankTransfers{0.0, 1.0 / 3.0}));
+    EXPECT_EQ(transfers_of(1, {300, 100}), (RankTransfers{0.0, 0.0}));
+    EXPECT_EQ(transfers_of(2, {0, 0, 900}), (RankTransfers{1.0 / 3.0, 1.0 / 3.0, 0.0}));
+    EXPECT_EQ(transfers_of(0, {5, 5, 5}), (RankTransfers{0.0, 0.0, 0.0}));
+    EXPECT_EQ(transfers_of(0, {0, 0}), (RankTransfers{0.0, 0.0}));
     RandomSequence random(71, 0, 0);
     for (int round = 0; round < 1000; ++round) {
         Work work(1 + static_cast<std::size_t>(random.uniform() * 12.0));
         for (std::uint64_t& one : work) one = static_cast<std::uint64_t>(random.uniform() * random.uniform() * 1e6);
         const double mean = static_cast<double>(std::accumulate(work.begin(), work.end(), std::uint64_t{0})) /
                             static_cast<double>(work.size());
-        for (const double left : after_gifts(work)) EXPECT_NEAR(left, mean, 1e-6 * (1.0 + mean)) << "round " << round;
+        for (const double left : after_transfers(work))
+            EXPECT_NEAR(left, mean, 1e-6 * (1.0 + mean)) << "round " << round;
     }
 }
 
@@ -73,7 +74,7 @@ bool is_moved(const Work& each_step, std::size_t particles, std::uint64_t steps)
         RankBalancer balancer;
         bool any = false;
         for (std::uint64_t k = 0; k < steps; ++k) {
-            any |= balancer.look(*ranks, particles).has_value();
+            any |= balancer.check(*ranks, particles).has_value();
             WorkCounts counts;
             counts.idle = each_step[ranks->rank()];
             balancer.note(counts);
@@ -88,11 +89,11 @@ TEST(RankBalancer, TransferStartsIfARankIsMoreThanATenthBehind) {
     EXPECT_FALSE(is_moved({kMany, kMany}, 100, 40));
     EXPECT_FALSE(is_moved({kMany * 109, kMany * 91}, 100, 40));
     EXPECT_TRUE(is_moved({kMany * 112, kMany * 88}, 100, 40));
-    EXPECT_TRUE(is_moved({kMany * 112, kMany * 88}, 100, RankBalancer::kSteps + 1)) << "at the first look";
+    EXPECT_TRUE(is_moved({kMany * 112, kMany * 88}, 100, RankBalancer::kSteps + 1)) << "at the first check";
     EXPECT_FALSE(is_moved({100, 0}, 100, 40)) << "a microsecond is not worth it";
     // For so many particles, the storage costs more than a few steps gain, but not more than sixteen.
     EXPECT_FALSE(is_moved({kMany * 112, kMany * 88}, 10 * kMany, RankBalancer::kSteps + 1));
-    EXPECT_TRUE(is_moved({kMany * 112, kMany * 88}, 10 * kMany, RankBalancer::kLooks * RankBalancer::kSteps + 1));
+    EXPECT_TRUE(is_moved({kMany * 112, kMany * 88}, 10 * kMany, RankBalancer::kChecks * RankBalancer::kSteps + 1));
 }
 
 }  // namespace RICOCHET_FILE

@@ -58,7 +58,8 @@ TEST(SleepingIslands, SpheresBeyondAWokenOneLoseTheirSupport) {
     EXPECT_EQ(piles.not_joined_to({10}), (Ids{13, 14}));
     EXPECT_EQ(piles.not_joined_to({10, 14}), Ids{});
     // The sphere that is awake still presses its neighbours.
-    EXPECT_TRUE(has(piles.edges(), 11, 12) && has(piles.edges(), 12, 13) && has(piles.edges(), 14, 20));
+    EXPECT_TRUE(has(piles.edge_contacts(), 11, 12) && has(piles.edge_contacts(), 12, 13) &&
+                has(piles.edge_contacts(), 14, 20));
 }
 
 TEST(SleepingIslands, SphereThatFallsAsleepAgainForgetsItsFormerLoads) {
@@ -78,9 +79,9 @@ TEST(SleepingIslands, FormerNeighbourOfASleeperStaysANeighbour) {
     piles.add({12}, {pair_of(11, 12, 7.0)}, {});
     EXPECT_EQ(piles.around({12}, 1), (Ids{11, 12, 13}));
     static_cast<void>(piles.wake({12}));
-    EXPECT_TRUE(has(piles.edges(), 12, 13));
+    EXPECT_TRUE(has(piles.edge_contacts(), 12, 13));
     static_cast<void>(piles.wake({13}));
-    EXPECT_FALSE(has(piles.edges(), 12, 13));
+    EXPECT_FALSE(has(piles.edge_contacts(), 12, 13));
 }
 
 }  // namespace RICOCHET_FILE

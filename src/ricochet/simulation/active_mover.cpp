@@ -131,7 +131,7 @@ void ActiveMover::move(const ActiveSet& active, const TimeSpan& step, std::vecto
         const std::span<const std::uint32_t> particles = active.block(block);
         for (std::size_t k = 0; k < particles.size(); ++k) {
             prefetch_ahead(*this, parts_.schedule, particles, k);
-            if (clouds != nullptr && clouds->leads(particles[k])) continue;
+            if (clouds != nullptr && clouds->has_parent(particles[k])) continue;
             move_one(particles[k], step, scratch, blocks[block]);
         }
         record_lists(scratch, blocks[block]);
@@ -229,7 +229,7 @@ void ActiveMover::apply_velocity_change(std::size_t i, const Vec3& change, doubl
     parts_.store.particles().spin[i] = parts_.store.spin_of(i, particle);
 }
 
-bool ActiveMover::set_out(std::size_t i, const TimeSpan& step, IslandMember& member) {
+bool ActiveMover::load_member(std::size_t i, const TimeSpan& step, IslandMember& member) {
     const TimeSpan life = life_in(parts_.store.particles(), i, step);
     if (life.end <= life.begin) return false;
     grow_core(parts_.store, response_.rules().bodies, i, life.begin);

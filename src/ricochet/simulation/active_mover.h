@@ -163,10 +163,10 @@ public:
 
     /// Loads a particle into a new island member, at the start of its life in the step. Returns false if the particle
     /// does not live in the step.
-    [[nodiscard]] bool set_out(std::size_t i, const TimeSpan& step, IslandMember& member);
+    [[nodiscard]] bool load_member(std::size_t i, const TimeSpan& step, IslandMember& member);
     /// Stores the final state and the records of a member.
     void write_back(IslandMember& member, const TimeSpan& step, BlockRecord& record);
-    /// Prefetches the data of a particle that set_out() and write_back() use.
+    /// Prefetches the data of a particle that load_member() and write_back() use.
     void prefetch(std::size_t i) const {
         parts_.store.prefetch(i);
         parts_.schedule.prefetch(i);

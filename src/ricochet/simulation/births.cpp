@@ -56,7 +56,7 @@ bool StepBirths::make() {
     for (const Emitter& emitter : emitters_) born_before += emitter.born();
     for (Wave wave = next_wave(); !wave.empty(); wave = next_wave()) {
         make(wave);
-        if (std::min(limits_.room, made_here_) > limits_.fitting) return false;
+        if (std::min(limits_.most_births, made_here_) > limits_.most_in_memory) return false;
         if (all_.empty()) {
             all_ = std::move(wave);
         } else {
@@ -77,11 +77,11 @@ bool StepBirths::make() {
 // a single rank, a wave ends with the first birth that does not fit into memory. make() can then report the error
 // early.
 StepBirths::Wave StepBirths::next_wave() {
-    const bool may_end = share_.is_alone() && limits_.fitting < limits_.room;
-    const std::uint64_t most = may_end ? std::min(kMostInWave, limits_.fitting + 1 - made_here_) : kMostInWave;
+    const bool may_end = share_.is_alone() && limits_.most_in_memory < limits_.most_births;
+    const std::uint64_t most = may_end ? std::min(kMostInWave, limits_.most_in_memory + 1 - made_here_) : kMostInWave;
     Wave wave;
     for (std::uint32_t k = 0; k < emitters_.size() && wave.size() < most; ++k) {
-        const std::uint64_t wanted = std::min(most - wave.size(), room_below(limits_.room, made_of_[k]));
+        const std::uint64_t wanted = std::min(most - wave.size(), room_below(limits_.most_births, made_of_[k]));
         const std::vector<DueBirth> due = emitters_[k].take_due(limits_.end, wanted);
         grow_capacity_by(wave, due.size());
         for (const DueBirth& birth : due) wave.push_back({birth, k});
@@ -100,21 +100,21 @@ bool StepBirths::may_be_refused(const Wave& wave) const {
 
 void StepBirths::make(Wave& wave) {
     const bool may_be_refused = this->may_be_refused(wave);
-    const bool is_told = !share_.is_alone() && may_be_refused && wave.size() > kFewBirths;
-    const bool all_make_all = may_be_refused && !is_told;
+    const bool shares_refusals = !share_.is_alone() && may_be_refused && wave.size() > kFewBirths;
+    const bool all_make_all = may_be_refused && !shares_refusals;
     std::vector<std::size_t> mine;
     for (std::size_t k = 0; k < wave.size(); ++k) {
         if (all_make_all || share_.has_place_for(limits_.first_id + taken_ + k)) mine.push_back(k);
     }
     std::vector<std::optional<Particle>>& made = made_.emplace_back(mine.size());
     make_by_threads(wave, mine, made);
-    if (tests_.among) look_among(wave, mine, made);
+    if (tests_.among) test_among(wave, mine, made);
     std::vector<std::uint64_t> refused;
     for (std::size_t j = 0; j < mine.size(); ++j) {
         if (!made[j]) refused.push_back(mine[j]);
     }
     keep_local(wave, mine, made);
-    if (is_told) refused = gather_list_to_all(share_.ranks(), refused);
+    if (shares_refusals) refused = gather_list_to_all(share_.ranks(), refused);
     for (const std::uint64_t k : refused) wave[k].is_refused = true;
     refused_by_overlap_ += refused.size();
     taken_ += wave.size();
@@ -149,7 +149,7 @@ void StepBirths::make_by_threads(const Wave& wave, std::span<const std::size_t> 
 
 // Tests each birth against the births before it. A refused birth is made again from its first random draw: it draws the
 // refused position again, and then further positions.
-void StepBirths::look_among(const Wave& wave, std::span<const std::size_t> mine,
+void StepBirths::test_among(const Wave& wave, std::span<const std::size_t> mine,
                             std::vector<std::optional<Particle>>& made) const {
     const BirthTest both = [this](const Particle& particle) {
         return (!tests_.alone || tests_.alone(particle)) && tests_.among(particle);
@@ -165,7 +165,7 @@ void StepBirths::give_ids() {
         return std::tuple(a.due.time, a.emitter, a.due.number) < std::tuple(b.due.time, b.emitter, b.due.number);
     };
     if (made_.size() > 1) std::sort(all_.begin(), all_.end(), by_order);
-    count_ = std::min<std::uint64_t>(all_.size(), limits_.room);
+    count_ = std::min<std::uint64_t>(all_.size(), limits_.most_births);
     for (std::uint64_t k = 0; k < count_; ++k) {
         if (all_[k].made == nullptr) continue;
         all_[k].made->id = limits_.first_id + k;

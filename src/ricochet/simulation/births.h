@@ -31,10 +31,10 @@ struct BirthTests {
 
 /// Limits of the births of a step.
 struct BirthLimits {
-    double end = 0.0;            ///< end of the step, in s
-    std::uint64_t room = 0;      ///< particles that may still be added, on all ranks
-    std::uint64_t fitting = 0;   ///< particles that still fit into the memory of this process
-    std::uint64_t first_id = 0;  ///< id of the first birth
+    double end = 0.0;                  ///< end of the step, in s
+    std::uint64_t most_births = 0;     ///< particles that may still be added, on all ranks
+    std::uint64_t most_in_memory = 0;  ///< particles that still fit into the memory of this process
+    std::uint64_t first_id = 0;        ///< id of the first birth
 };
 
 /// The births of a step.
@@ -69,7 +69,7 @@ private:
     void make(Wave& wave);
     void make_by_threads(const Wave& wave, std::span<const std::size_t> mine,
                          std::vector<std::optional<Particle>>& made) const;
-    void look_among(const Wave& wave, std::span<const std::size_t> mine,
+    void test_among(const Wave& wave, std::span<const std::size_t> mine,
                     std::vector<std::optional<Particle>>& made) const;
     void keep_local(Wave& wave, std::span<const std::size_t> mine, std::vector<std::optional<Particle>>& made);
     [[nodiscard]] bool may_be_refused(const Wave& wave) const;

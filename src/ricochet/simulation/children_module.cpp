@@ -35,7 +35,7 @@ bool ChildrenModule::spawn(const TimeSpan& step) {
     const std::uint64_t first_id = store.next_id();
     OffspringCounts counts;
     std::vector<Child> children =
-        offspring_.after_move(store.particles(), step.begin, step.end, parts_.recorder.batch_contacts(), counts);
+        offspring_.after_move(store.particles(), step.begin, step.end, parts_.recorder.generation_contacts(), counts);
     std::vector<Particle*> born;
     for (Child& child : children) {
         child.particle.id = first_id + child.number;

@@ -76,7 +76,7 @@ const char* CloudMotion::fault_of(std::size_t i) const {
 }
 
 bool CloudMotion::is_sound(std::size_t i) const {
-    if (!leads(i)) return true;
+    if (!has_parent(i)) return true;
     const std::uint32_t emitter = store_.particles().origin[i].emitter;
     if (emitter >= emitters_.size() || members_[i].parent >= store_.next_id() || !is_finite(members_[i].offset))
         return false;
@@ -104,7 +104,7 @@ void CloudMotion::note_tracks(const ParticleRange& spawn_generation, const TimeS
     const RecordsByParticle records(std::move(all));
     const Particles& particles = store_.particles();
     for (std::size_t i = spawn_generation.begin; i < spawn_generation.end; ++i) {
-        if (!is_parent(i) || leads(i)) continue;
+        if (!is_parent(i) || has_parent(i)) continue;
         const std::uint64_t id = particles.id[i];
         tracks_[id] = {
             flight_knots(particles, i, starts_[i - spawn_generation.begin], step.begin, step.end, records.of(id)),
@@ -116,7 +116,7 @@ void CloudMotion::note_tracks(const ParticleRange& spawn_generation, const TimeS
 std::vector<std::vector<std::size_t>> CloudMotion::levels_of(const ParticleRange& spawn_generation) const {
     std::vector<std::size_t> all;
     for (std::size_t i = spawn_generation.begin; i < spawn_generation.end; ++i) {
-        if (leads(i) && !store_.is_fixed(i)) all.push_back(i);
+        if (has_parent(i) && !store_.is_fixed(i)) all.push_back(i);
     }
     const auto generation = [&](std::size_t i) { return store_.particles().origin[i].generation; };
     std::stable_sort(all.begin(), all.end(),
@@ -165,7 +165,8 @@ void CloudMotion::move_child(std::size_t i, const TimeSpan& step, MoveScratch& s
     if (is_alone && particles.absorbed[i] == 0) {
         part(i, journey.now);
         const std::size_t first = scratch.records.size();
-        if (journey.now < journey.until && !leads(i) && !store_.is_fixed(i) && !has_ended(particles, i, journey.now)) {
+        if (journey.now < journey.until && !has_parent(i) && !store_.is_fixed(i) &&
+            !has_ended(particles, i, journey.now)) {
             free_mover_.move_one(i, {journey.now, journey.until}, scratch, record);
             journey.now = journey.until;
         }

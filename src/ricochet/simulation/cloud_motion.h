@@ -35,7 +35,7 @@ public:
                 const Retirement& retirement);
 
     /// Returns true if the particle moves with a parent.
-    [[nodiscard]] bool leads(std::size_t i) const { return members_[i].parent != kNobody; }
+    [[nodiscard]] bool has_parent(std::size_t i) const { return members_[i].parent != kNobody; }
     /// Returns the id of each particle's parent, or -1 for a particle outside clouds.
     [[nodiscard]] std::vector<std::int64_t> parents() const;
     /// Returns the path of a parent in this step. The path is empty if the particle is not a parent or has not moved

@@ -18,7 +18,7 @@ constexpr std::size_t kBlock = 256;
 
 /// Largest number of support predictions for a step before half of the step is tried. Local, because kPredictionEnergy
 /// decides about the accuracy.
-constexpr int kMostForesights = 16;
+constexpr int kMostPredictions = 16;
 
 /// Number of predictions in a row without improvement after which the iteration stops. Local, because the best
 /// prediction is used.
@@ -143,7 +143,7 @@ double CoupledMotion::plan(const Particles& particles, double time, double durat
     const bool is_implicit = !solver_ && integrator_.kind == IntegratorKind::implicit_euler;
     if (!holds_coupling(integrator_.kind))
         system_.expect_reactions(expected_reactions(particles, contact_acceleration));
-    const SystemStep step = is_implicit ? among_surfaces(duration, particles, contacts) : stepped(duration);
+    const SystemStep step = is_implicit ? step_with_supports(duration, particles, contacts) : stepped(duration);
     if (!springs_.empty()) energy_.watch(step);
     is_unsolved_ = is_unsolved_ || !step.solved;
     for (std::size_t k = 0; k < system_.size(); ++k) slots_[system_.members()[k]] = static_cast<std::uint32_t>(k);
@@ -209,7 +209,8 @@ SystemStep CoupledMotion::stepped(double duration) {
 /// because springs then transmit less motion between members. The next substep starts with the duration that settled
 /// last. If half of the duration is not better, the step is accepted and counts as unsolved. An example is a point on
 /// an edge, because each of the two faces leads the point to the other face.
-SystemStep CoupledMotion::among_surfaces(double duration, const Particles& particles, const PlannedContacts& contacts) {
+SystemStep CoupledMotion::step_with_supports(double duration, const Particles& particles,
+                                             const PlannedContacts& contacts) {
     std::vector<Vec3> spins;
     for (const std::uint32_t i : system_.members()) spins.push_back(particles.spin[i]);
     const double first_try = std::max(first_try_, kLeastCoupledPart * time_step_);
@@ -253,7 +254,7 @@ CoupledMotion::SupportPrediction CoupledMotion::predict(double duration, std::sp
     bool is_close = false;
     std::vector<SupportConstraints> held =
         contacts.find(system_, step.velocities, spins, duration, kRough.least_compliance);
-    for (int pass = 0, worse = 0; pass < kMostForesights && worse < kMostWorse; ++pass) {
+    for (int pass = 0, worse = 0; pass < kMostPredictions && worse < kMostWorse; ++pass) {
         const Closeness& closeness = is_close ? kClose : kRough;
         step = implicit_system_step(system_, duration, held, step.velocities, {closeness.tolerance, between_});
         duration = step.duration;
@@ -268,7 +269,8 @@ CoupledMotion::SupportPrediction CoupledMotion::predict(double duration, std::sp
             held = find(kClose.least_compliance);
             continue;
         }
-        if (has_settled) residual += residual_energy(system_, step, contacts.bends(system_, step, found));
+        if (has_settled)
+            residual += residual_energy(system_, step, contacts.find_curvature_deviations(system_, step, found));
         ++worse;
         if (has_settled || best.held.empty() || residual < best.residual) {
             const double lost = lost_in(step);  // can be negative if members rebound from surfaces

@@ -170,8 +170,8 @@ private:
         bool has_settled = false;
         bool is_close = false;  // true if solved to kNewtonTolerance
     };
-    [[nodiscard]] SystemStep among_surfaces(double duration, const Particles& particles,
-                                            const PlannedContacts& contacts);
+    [[nodiscard]] SystemStep step_with_supports(double duration, const Particles& particles,
+                                                const PlannedContacts& contacts);
     [[nodiscard]] SupportPrediction predict(double duration, std::span<const Vec3> spins,
                                             const PlannedContacts& contacts) const;
     [[nodiscard]] double lost_in(const SystemStep& step) const;

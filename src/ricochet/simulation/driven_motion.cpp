@@ -40,7 +40,7 @@ DrivenMotion::DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frame
       paths_(bodies_, frames, colliders, forces),
       slow_(settings.resting_speed),
       time_step_(settings.time_step),
-      shortest_part_(kShortestPart * settings.time_step),
+      shortest_substep_(kShortestPart * settings.time_step),
       loads_(bodies_.size()),
       resting_loads_(bodies_.size()),
       contacts_(bodies_.size()),
@@ -53,7 +53,7 @@ void DrivenMotion::begin_step() {
         resting_loads_[k] = {};
     }
     resting_time_ = 0.0;
-    parts_ = 0;
+    substeps_ = 0;
     for (BodyContacts& contacts : contacts_) contacts.begin_step();
 }
 
@@ -68,7 +68,7 @@ double DrivenMotion::work_by_yielding(const ColliderLoad& load) const {
 double DrivenMotion::next_substep_end(double begin, double end) const {
     // Local: this factor prevents a last substep that is much shorter than the others.
     constexpr double kAboutAll = 1.1;
-    return end - begin > kAboutAll * longest_part_ ? begin + longest_part_ : end;
+    return end - begin > kAboutAll * longest_substep_ ? begin + longest_substep_ : end;
 }
 
 void DrivenMotion::plan(double begin, double end, double oldest) {
@@ -85,7 +85,7 @@ std::vector<double> DrivenMotion::shares_of(std::span<const ColliderLoad> previe
         if (body) tallies[*body].add(load);
     }
     std::vector<double> shares;
-    for (const ImpactTally& tally : tallies) shares.push_back(tally.share(end));
+    for (const ImpactTally& tally : tallies) shares.push_back(tally.reaction_factor(end));
     return shares;
 }
 
@@ -101,8 +101,8 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
     const double end = paths_.planned(0).end;
     const double begin = paths_.planned(0).begin;
     const auto end_of = [&](const std::vector<ImpactTally>& taken, double time, double next) {
-        const double least = parts_ < kManyParts ? begin : begin + shortest_part_;
-        return std::min(end, std::max(least, end_after(taken, time, next, begin, shortest_part_)));
+        const double least = substeps_ < kManyParts ? begin : begin + shortest_substep_;
+        return std::min(end, std::max(least, end_after(taken, time, next, begin, shortest_substep_)));
     };
     std::vector<ImpactTally> tallies = paths_.no_impacts();
     for (std::size_t first = 0, next = 0; first < preview.size(); first = next) {
@@ -124,7 +124,7 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
         // A particle that waits for a body moves with the body's surface and not in the direction of its own momentum.
         // A couple on the body then conserves the angular momentum. The couple of a heavy particle turns the body
         // strongly, so the substep ends soon.
-        if (is_heavy && parts_ < kManyParts) {
+        if (is_heavy && substeps_ < kManyParts) {
             const double until = next < preview.size() ? preview[next].time : end;
             return std::min(end, soon_after_impact(preview[first].time, until));
         }
@@ -168,7 +168,7 @@ double DrivenMotion::end_of_waits(std::span<const ColliderLoad> preview, double 
         const double since = is_known ? std::max(begin, preview[i - 1].time) : begin;
         const double change = change_by(*body, wrench_of(load, bodies_[*body].moment_center()), 1.0);
         const double part = most_change(*body) / change;
-        const double least = parts_ < kManyParts ? 0.0 : shortest_part_;
+        const double least = substeps_ < kManyParts ? 0.0 : shortest_substep_;
         if (since < end && part < 1.0) end = std::min(end, since + std::max(least, part * (load.time - since)));
     }
     return end;
@@ -184,10 +184,10 @@ DrivenMotion::Fit DrivenMotion::fit_of(std::size_t body, const RestingLoad& rest
     const Wrench& planned = loads_[body];
     // Divides by at least a minimum duration. Otherwise a slow impact would count as a large lasting force in a substep
     // that impacts have shortened.
-    const double lasts = std::max(duration, kShortestLoad * shortest_part_);
+    const double lasts = std::max(duration, kShortestLoad * shortest_substep_);
     const Wrench back{resting_load.wrench.impulse / lasts, resting_load.wrench.moment / lasts};
     const Wrench lacks{back.impulse - planned.impulse, back.moment - planned.moment};
-    const double at_once = change_by(body, back, shortest_part_) / (1.0 + resting_load.heaviness);
+    const double at_once = change_by(body, back, shortest_substep_) / (1.0 + resting_load.heaviness);
     const double most = std::max(most_change(body), at_once);
     const Wrench varies = relaxations_[body].variation(planned, back, resting_load.heaviness);
     const double change = change_by(body, varies, duration);
@@ -241,7 +241,7 @@ bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut,
         return false;
     }
     const double duration = end - begin;
-    const bool can_shorten = duration > 1.5 * shortest_part_;
+    const bool can_shorten = duration > 1.5 * shortest_substep_;
     const int most_rounds = can_shorten ? kMostLoadRounds : kFewLoadRounds;
     const bool is_last = round % kMostLoadRounds >= most_rounds - 1;
     double longest = 1.0;  // fraction of the duration
@@ -264,7 +264,7 @@ bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut,
     }
     if (longest < 1.0) {
         was_shortened_ = true;
-        end = begin + std::max(shortest_part_, longest * duration);
+        end = begin + std::max(shortest_substep_, longest * duration);
         for (std::size_t k = 0; k < bodies_.size(); ++k) {
             if (relaxations_[k].is_searching()) loads_[k] = relaxations_[k].shortened((end - begin) / duration);
         }
@@ -325,11 +325,11 @@ void DrivenMotion::limit_next_substep(double duration) {
     // Local: a rule of this step control, which checks each substep.
     constexpr double kGrowth = 2.0;
     if (was_shortened_) {
-        longest_part_ = kGrowth * duration;
-    } else if (duration > longest_part_ / kGrowth) {
-        longest_part_ *= kGrowth;
+        longest_substep_ = kGrowth * duration;
+    } else if (duration > longest_substep_ / kGrowth) {
+        longest_substep_ *= kGrowth;
     }
-    if (!(longest_part_ < time_step_)) longest_part_ = std::numeric_limits<double>::infinity();
+    if (!(longest_substep_ < time_step_)) longest_substep_ = std::numeric_limits<double>::infinity();
 }
 
 void DrivenMotion::follow(std::span<const ColliderLoad> loads) {
@@ -354,7 +354,7 @@ void DrivenMotion::follow(std::span<const ColliderLoad> loads) {
     }
     if (!bodies_.empty()) resting_time_ += paths_.planned(0).end - paths_.planned(0).begin;
     paths_.set_followed();
-    ++parts_;
+    ++substeps_;
 }
 
 void DrivenMotion::take(std::span<const ColliderLoad> loads) {
@@ -371,7 +371,7 @@ bool DrivenMotion::is_sound(double time) const {
         if (!is_whole) return false;
     }
     // A substep that does not advance the time would be repeated forever.
-    return resting_time_ >= 0.0 && std::isfinite(resting_time_) && time + longest_part_ > time;
+    return resting_time_ >= 0.0 && std::isfinite(resting_time_) && time + longest_substep_ > time;
 }
 
 }  // namespace ricochet

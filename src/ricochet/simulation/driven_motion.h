@@ -144,7 +144,7 @@ public:
         a(resting_time_);
         for (LoadRelaxation& relaxation : relaxations_) relaxation.archive(a);
         paths_.archive_plan(a);
-        a(longest_part_);
+        a(longest_substep_);
     }
 
     /// Returns false if no run can produce the present state of the bodies at a time, in s.
@@ -178,11 +178,11 @@ private:
 
     std::vector<DrivenBody> bodies_;
     BodyPaths paths_;
-    double slow_;                                                    // m/s, largest speed of impacts that end bouncing
-    double time_step_;                                               // s
-    double shortest_part_;                                           // s
-    double longest_part_ = std::numeric_limits<double>::infinity();  // s, largest duration of the next substep
-    bool was_shortened_ = false;                                     // true if resting loads shortened this substep
+    double slow_;              // m/s, largest speed of impacts that end bouncing
+    double time_step_;         // s
+    double shortest_substep_;  // s
+    double longest_substep_ = std::numeric_limits<double>::infinity();  // s, largest duration of the next substep
+    bool was_shortened_ = false;                                        // true if resting loads shortened this substep
     bool was_cut_ = false;                     // true if an impact has cut the last plan while loads rest on bodies
     bool has_given_up_ = false;                // true if no load fits in this substep
     std::vector<Wrench> loads_;                // per body: resting load for the next plan, N and N m
@@ -190,7 +190,7 @@ private:
     double resting_time_ = 0.0;                // s, duration of the substeps of this step so far
     std::vector<BodyContacts> contacts_;       // of each body
     std::vector<LoadRelaxation> relaxations_;  // of each body
-    int parts_ = 0;                            // number of substeps of this step so far
+    int substeps_ = 0;                         // number of substeps of this step so far
 };
 
 }  // namespace ricochet

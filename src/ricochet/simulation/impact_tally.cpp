@@ -64,7 +64,7 @@ double ImpactTally::speed_by(Wrench wrench, const ColliderLoad& load) const {
     return length(body.change_at(load.particle_center, wrench));
 }
 
-double ImpactTally::share(double time) const {
+double ImpactTally::reaction_factor(double time) const {
     if (count_ < 2 || !changes_energy(time)) return 1.0;
     const BodyOnPath body = at(time);
     return std::max(1.0, body.mobility.energy_by(body.about_center(wrench_, about_)) / dynamic_);

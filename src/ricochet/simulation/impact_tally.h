@@ -38,7 +38,7 @@ public:
     /// Returns the factor by which the body reacts more strongly to all impacts together at a time, in s, than to each
     /// impact alone. The factor is a ratio of energies, at least 1. It is 1 if the joint application would not change
     /// the energy by much.
-    [[nodiscard]] double share(double time) const;
+    [[nodiscard]] double reaction_factor(double time) const;
     [[nodiscard]] const Wrench& wrench() const { return wrench_; }
 
 private:

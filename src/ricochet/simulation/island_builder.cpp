@@ -51,7 +51,7 @@ void IslandBuilder::find_islands(const ParticleRange& range) {
     }
     // Spheres that may leave their boxes form islands even if they meet no other sphere.
     for (std::uint32_t k = 0; k < range.size(); ++k) {
-        if (plans_.may_roam(k)) involved.push_back(k);
+        if (plans_.may_leave_box(k)) involved.push_back(k);
     }
     islands_ = islands_of(involved);
 }
@@ -135,7 +135,7 @@ void IslandBuilder::collect_members(Island& island, const TimeSpan& step) {
             parts_.mover.prefetch(first_ + order[n + kIslandPrefetchDistance].number);
         const std::uint32_t k = order[n].number;
         IslandMember& member = island.members.emplace_back();
-        if (!parts_.mover.set_out(first_ + k, step, member)) {
+        if (!parts_.mover.load_member(first_ + k, step, member)) {
             island.members.pop_back();
             continue;
         }
@@ -189,7 +189,7 @@ std::vector<std::vector<std::uint32_t>> IslandBuilder::met_by(const OutOfBoundsM
     for_each([&](const IslandMember&, const Box3& swept, auto& found) { plans_.find_near(swept, found); });
     std::vector<std::uint32_t> all;
     for (const auto& found : met) all.insert(all.end(), found.begin(), found.end());
-    plans_.ask(std::move(all));
+    plans_.test_free_flight(std::move(all));
     for_each([&](const IslandMember& member, const Box3& swept, auto& found) {
         std::erase_if(found, [&](std::uint32_t k) { return !plans_.comes_to(member, k); });
         if (round_ == 0) return;

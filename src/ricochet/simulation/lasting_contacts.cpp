@@ -63,7 +63,7 @@ void LastingContacts::wake(const std::vector<std::uint64_t>& particles, double t
     const int farther = std::max(0, ++wakings_ - kWakingsAlone);
     wake_alone(sleeping_islands_.around(particles, contacts << std::min(farther, kMostWakingDoublings)), time);
     std::vector<std::uint64_t> held;
-    for (const WarmStartMemory::Entry& entry : sleeping_islands_.edges()) {
+    for (const WarmStartMemory::Entry& entry : sleeping_islands_.edge_contacts()) {
         const std::uint64_t sleeper = sleeper_of(entry.key);
         if (is_pinned(parts_.store, entry.key.particle + entry.key.other - sleeper)) held.push_back(sleeper);
     }
@@ -87,15 +87,15 @@ void LastingContacts::wake_alone(const std::vector<std::uint64_t>& woken, double
     std::vector<WarmStartMemory::Entry> contacts = sleeping_islands_.wake(woken);
     // Keeps only contacts that the memory lacks. Contacts of spheres that were awake before are in the memory already,
     // or have ended. Contacts without an impulse have no effect.
-    const auto has_lain = [&](std::uint64_t particle) {
-        return std::binary_search(woken.begin(), woken.end(), particle) || sleeping_islands_.has(particle) ||
+    const auto has_slept = [&](std::uint64_t particle) {
+        return std::binary_search(woken.begin(), woken.end(), particle) || sleeping_islands_.is_asleep(particle) ||
                is_pinned(parts_.store, particle);
     };
     std::erase_if(contacts, [&](const WarmStartMemory::Entry& entry) {
         const ContactKey& key = entry.key;
         const bool goes_on = memory_.find(key) != nullptr;
-        return goes_on || entry.impulse.normal == 0.0 || !has_lain(key.particle) ||
-               !(key.is_wall() || has_lain(key.other));
+        return goes_on || entry.impulse.normal == 0.0 || !has_slept(key.particle) ||
+               !(key.is_wall() || has_slept(key.other));
     });
     memory_.add(contacts);
 }
@@ -146,12 +146,12 @@ bool LastingContacts::hits_sleeper(std::size_t hitting, std::size_t sleeping, co
     const double resting = rules().settings.resting_speed;
     const double slow = std::max(resting, std::sqrt(2.0 * pull * kWakingFall * particles.radius[hitting]));
     if (length(velocity) > slow) return true;
-    return is_aside(sleeping, towards, step.begin) && dot(velocity, towards) > resting * length(towards);
+    return is_opposed_by_friction(sleeping, towards, step.begin) && dot(velocity, towards) > resting * length(towards);
 }
 
 /// Returns true if only friction opposes a push on a sleeper, because the push is not directed onto the supports of the
 /// sleeper.
-bool LastingContacts::is_aside(std::size_t sleeping, const Vec3& direction, double time) const {
+bool LastingContacts::is_opposed_by_friction(std::size_t sleeping, const Vec3& direction, double time) const {
     const Vec3 pull = rules().forces.acceleration(parts_.store.force_input(sleeping, time));
     return pull == Vec3{} || dot(direction, pull) < kOntoSupports * length(direction) * length(pull);
 }
@@ -182,9 +182,9 @@ std::vector<std::uint64_t> LastingContacts::loaded_sleepers(std::span<const Pair
     std::vector<std::uint64_t> loaded;
     if (sleeping_islands_.empty() || are_children_) return loaded;
     for (const PairImpactRecord& impact : impacts) {
-        if (sleeping_islands_.has(impact.first) == sleeping_islands_.has(impact.second)) continue;
+        if (sleeping_islands_.is_asleep(impact.first) == sleeping_islands_.is_asleep(impact.second)) continue;
         if (impact.approach > rules().settings.resting_speed)
-            loaded.push_back(sleeping_islands_.has(impact.first) ? impact.first : impact.second);
+            loaded.push_back(sleeping_islands_.is_asleep(impact.first) ? impact.first : impact.second);
     }
     for (const WarmStartMemory::Entry& entry : trace.pressed) {
         if (is_pressed_more(entry, step)) loaded.push_back(sleeper_of(entry.key));
@@ -270,8 +270,8 @@ std::vector<SleeperImpulse> LastingContacts::impulses_on_sleepers(std::span<cons
         impulses.insert(impulses.end(), trace->onto_sleepers.begin(), trace->onto_sleepers.end());
     }
     for (const PairImpactRecord& impact : impacts) {
-        if (sleeping_islands_.has(impact.first)) impulses.push_back({impact.first, -impact.impulse});
-        if (sleeping_islands_.has(impact.second)) impulses.push_back({impact.second, impact.impulse});
+        if (sleeping_islands_.is_asleep(impact.first)) impulses.push_back({impact.first, -impact.impulse});
+        if (sleeping_islands_.is_asleep(impact.second)) impulses.push_back({impact.second, impact.impulse});
     }
     return impulses;
 }
@@ -314,11 +314,11 @@ void LastingContacts::check_sleepers(const TimeSpan& step, std::vector<BlockReco
 }
 
 std::uint64_t LastingContacts::sleeper_of(const ContactKey& key) const {
-    return sleeping_islands_.has(key.particle) ? key.particle : key.other;
+    return sleeping_islands_.is_asleep(key.particle) ? key.particle : key.other;
 }
 
 bool LastingContacts::is_at_edge_of_sleep(const ContactKey& key) const {
-    return !key.is_wall() && sleeping_islands_.has(key.particle) != sleeping_islands_.has(key.other);
+    return !key.is_wall() && sleeping_islands_.is_asleep(key.particle) != sleeping_islands_.is_asleep(key.other);
 }
 
 bool LastingContacts::is_pressed_more(const WarmStartMemory::Entry& entry, const TimeSpan& step) const {
@@ -330,7 +330,7 @@ bool LastingContacts::is_pressed_more(const WarmStartMemory::Entry& entry, const
     const ForceInput state = parts_.store.force_input(*i, step.begin);
     const double pull = length(rules().forces.acceleration(state));
     const std::vector<Vec3>& position = parts_.store.particles().position;
-    const bool goes_aside = is_aside(*i, position[*i] - position[*other], step.begin);
+    const bool goes_aside = is_opposed_by_friction(*i, position[*i] - position[*other], step.begin);
     const double weights =
         (goes_aside ? kWakingWeightsAside : kWakingWeights) * state.mass * pull * (step.end - step.begin);
     return entry.impulse.normal > kMorePressed * (sleeping_islands_.load_of(sleeper) + weights);
@@ -340,7 +340,7 @@ bool LastingContacts::is_pressed_more(const WarmStartMemory::Entry& entry, const
 void LastingContacts::wake_unsupported(const TimeSpan& step) {
     if (sleeping_islands_.empty()) return;
     std::vector<std::uint64_t> left;
-    for (const WarmStartMemory::Entry& entry : sleeping_islands_.edges()) {
+    for (const WarmStartMemory::Entry& entry : sleeping_islands_.edge_contacts()) {
         if (relative_gap(parts_.store, entry.key) > kWakingFall) left.push_back(sleeper_of(entry.key));
     }
     for (const WarmStartMemory::Entry& entry : memory_.entries()) {

@@ -92,7 +92,7 @@ private:
                                                                    std::span<const PairImpactRecord> impacts) const;
     void wake_alone(const std::vector<std::uint64_t>& woken, double time);
     [[nodiscard]] bool hits_sleeper(std::size_t hitting, std::size_t sleeping, const TimeSpan& step) const;
-    [[nodiscard]] bool is_aside(std::size_t sleeping, const Vec3& direction, double time) const;
+    [[nodiscard]] bool is_opposed_by_friction(std::size_t sleeping, const Vec3& direction, double time) const;
     void put_to_sleep(std::span<const ContactIslandTrace* const> traces, const TimeSpan& step);
     void wake_unsupported(const TimeSpan& step);
     [[nodiscard]] std::uint64_t sleeper_of(const ContactKey& key) const;

@@ -99,7 +99,7 @@ bool LoneMotion::flies_freely(std::uint32_t k, MoveScratch& scratch) const {
     const bool touches = parts_.store.particles().support[i][0] != kNoSupport || traces_->presses[k] != 0;
     if (touches || !lives_through(i)) return false;
     IslandMember member;
-    if (!parts_.mover.set_out(i, step_, member)) return false;
+    if (!parts_.mover.load_member(i, step_, member)) return false;
     MovingParticle& moving = member.moving;
     if (member.is_fixed || moving.state.time > step_.begin) return false;
     moving.step_end = member.end;

@@ -17,18 +17,18 @@ namespace {
 constexpr double kProgram = 12e6;             // libraries and threads
 constexpr double kParticle = 380.0;           // a particle in the arrays, in two frames, and as a value at its birth
 constexpr double kAttributeComponent = 32.0;  // a component of an attribute, stored like the particle
-constexpr double kFamily = 400.0;             // with children, per particle: its origin, and the lists of its children
+constexpr double kChildLists = 400.0;         // with children, per particle: its origin, and the lists of its children
 constexpr double kCloudParticle = 300.0;      // with clouds, per particle: its parent, and the path of a parent
 constexpr double kSide = 16.0;                // per particle and collider: state of penalty and similar responses
 constexpr double kVerifiedParticle = 90.0;    // a particle with options.verify
-constexpr double kMeetingParticle = 1500.0;   // per colliding sphere: boxes, pairs, islands and contacts, by counting
+constexpr double kCollidingSphere = 1500.0;   // per colliding sphere: boxes, pairs, islands and contacts, by counting
 constexpr double kTriangle = 378.0;           // a triangle and its search structures, during construction
 constexpr double kVerifiedTriangle = 160.0;   // a triangle with options.verify
 constexpr double kContact = 412.0;            // a contact record, and its row in the log
 constexpr double kMemoryEstimateMostContacts = 500'000.0;  // most buffered log rows, without the rows of one step
 constexpr double kJoinedParticle = 800.0;    // like kParticle, with the data from which its rope or cloth is built
 constexpr double kSpring = 200.0;            // a spring, with the data from which it is built
-constexpr double kStandingTriangle = 238.0;  // like kTriangle, after the mesh has been read
+constexpr double kLoadedTriangle = 238.0;    // like kTriangle, after the mesh has been read
 constexpr double kCoupledParticle = 900.0;   // with forces between particles, per particle: its plan and force lists
 constexpr double kImplicitParticle = 390.0;  // a particle in the matrix of implicit_euler
 constexpr double kImplicitSpring = 1200.0;   // a spring in the matrix of implicit_euler and in its factors
@@ -53,7 +53,7 @@ double bytes_taken(const SimulationSetup& setup) {
     double bytes = particles * ((setup.springs.empty() ? kParticle : kJoinedParticle) - kStillToCome);
     bytes += static_cast<double>(setup.springs.size()) * (kSpring - static_cast<double>(sizeof(Spring)));
     for (const ColliderDescription& collider : setup.colliders) {
-        bytes += triangles_of(collider.shape) * (kTriangle - kStandingTriangle) + positions_of(collider.shape);
+        bytes += triangles_of(collider.shape) * (kTriangle - kLoadedTriangle) + positions_of(collider.shape);
     }
     return kProgram + bytes;
 }
@@ -214,10 +214,10 @@ void require_memory(const SimulationSetup& setup) {
 
 double bytes_per_particle(const SimulationSetup& setup) {
     double bytes = kParticle + kAttributeComponent * columns_of(setup);
-    if (has_children(setup)) bytes += kFamily;
+    if (has_children(setup)) bytes += kChildLists;
     if (std::any_of(setup.emitters.begin(), setup.emitters.end(), is_cloud)) bytes += kCloudParticle;
     if (setup.options.verify) bytes += kVerifiedParticle;
-    if (setup.options.particle_contacts) bytes += kMeetingParticle;
+    if (setup.options.particle_contacts) bytes += kCollidingSphere;
     if (!setup.particles_forces.empty()) bytes += kCoupledParticle;
     if (setup.options.response != ResponseKind::exact) bytes += kSide * static_cast<double>(setup.colliders.size());
     return bytes;

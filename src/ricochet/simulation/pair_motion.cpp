@@ -19,14 +19,14 @@ constexpr std::size_t kPairMotionPrefetchDistance = 6;
 
 /// Returns the impact rules for the verifier. They come from the settings and not from the table that moves spheres, so
 /// that the verifier is independent.
-verify::ImpactAudit books_of(const PairParts& parts) {
+verify::ImpactAudit impact_audit_of(const PairParts& parts) {
     const PairContactSettings& settings = parts.settings;
     const ResponseRules& rules = parts.response.rules();
-    verify::ImpactAudit books{settings.restitution, settings.friction, settings.rolling_friction,
+    verify::ImpactAudit audit{settings.restitution, settings.friction, settings.rolling_friction,
                               rules.settings.resting_speed, rules.forces.is_uniform() && !parts.coupled.is_active()};
     const std::vector<std::string>& names = settings.materials;
-    books.materials = names.size();
-    books.by_materials.assign(names.size() * names.size(),
+    audit.materials = names.size();
+    audit.by_materials.assign(names.size() * names.size(),
                               {settings.restitution, settings.friction, settings.rolling_friction});
     std::map<std::string_view, std::size_t> numbers;
     for (std::size_t k = 0; k < names.size(); ++k) numbers.emplace(names[k], k);
@@ -35,9 +35,9 @@ verify::ImpactAudit books_of(const PairParts& parts) {
         const std::size_t b = numbers.at(pair.second);
         const verify::ImpactAudit::Pair own{pair.material.restitution, pair.material.friction,
                                             pair.material.rolling_friction};
-        books.by_materials[a * names.size() + b] = books.by_materials[b * names.size() + a] = own;
+        audit.by_materials[a * names.size() + b] = audit.by_materials[b * names.size() + a] = own;
     }
-    return books;
+    return audit;
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ PairMotion::PairMotion(const PairParts& parts, RunRecorder& recorder, MoveObserv
       contacts_(parts),
       plans_(parts),
       islands_(parts, plans_, contacts_),
-      books_(books_of(parts)) {
+      impact_audit_(impact_audit_of(parts)) {
     observers.sleeping_islands = &contacts_.sleeping_islands();
 }
 
@@ -122,7 +122,7 @@ void PairMotion::record_impacts(const std::vector<PairImpactRecord>& impacts, co
     statistics.pair_impacts += impacts.size();
     statistics.overlap_largest = std::max(statistics.overlap_largest, largest_overlap(time));
     recorder_.add_pair_impacts(impacts);
-    if (observers_.check != nullptr) recorder_.add_pair_violations(RunCheck::check_meetings(meetings, books_));
+    if (observers_.check != nullptr) recorder_.add_pair_violations(RunCheck::check_meetings(meetings, impact_audit_));
 }
 
 void PairMotion::write_back(std::vector<IslandMember>& members, const TimeSpan& step, BlockRecord& record) {

@@ -60,7 +60,7 @@ private:
     LastingContacts contacts_;
     PairPlans plans_;
     IslandBuilder islands_;
-    verify::ImpactAudit books_;
+    verify::ImpactAudit impact_audit_;
     std::uint64_t unsolved_ = 0;  // number of contact islands, in all steps, that were not solved to the tolerance
 };
 

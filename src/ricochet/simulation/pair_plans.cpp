@@ -30,7 +30,7 @@ void PairPlans::find(const ParticleRange& range, const TimeSpan& step, const Pai
     for (std::uint32_t k = 0; k < boxes_.size(); ++k) {
         if (alone_.may_leave(boxes_[k])) asked.push_back(k);
     }
-    ask(std::move(asked));
+    test_free_flight(std::move(asked));
     near_.find(boxes_);
     collect_pairs();
     for (int k = 0; k < kDeflections && expect_deflections(); ++k) {
@@ -48,7 +48,7 @@ void PairPlans::collect_pairs() {
                   [&](const NeighbourPair& pair) { return !alone_.moves(pair.first) && !alone_.moves(pair.second); });
     std::vector<std::uint32_t> near;
     for (const NeighbourPair& pair : pairs_) near.push_back(pair.first), near.push_back(pair.second);
-    ask(std::move(near));
+    test_free_flight(std::move(near));
     met_.assign(pairs_.size(), 0);
     parallel_for_blocks(pairs_.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) met_[n] = do_meet(pairs_[n]) ? 1 : 0;
@@ -79,8 +79,8 @@ bool PairPlans::expect_deflections() {
 std::vector<NeighbourPair> PairPlans::stack_on(std::vector<std::uint32_t> base) const {
     std::vector<NeighbourPair> resting_load;  // each pair: sphere below, sphere above
     for (const NeighbourPair& pair : pairs_) {
-        if (lies_on(pair.second, pair.first)) resting_load.push_back(pair);
-        if (lies_on(pair.first, pair.second)) resting_load.push_back({pair.second, pair.first});
+        if (is_resting_on(pair.second, pair.first)) resting_load.push_back(pair);
+        if (is_resting_on(pair.first, pair.second)) resting_load.push_back({pair.second, pair.first});
     }
     const auto by_first = [](const NeighbourPair& a, const NeighbourPair& b) { return a.first < b.first; };
     std::sort(resting_load.begin(), resting_load.end(), by_first);
@@ -103,7 +103,7 @@ std::vector<NeighbourPair> PairPlans::stack_on(std::vector<std::uint32_t> base) 
 }
 
 /// Returns true if a free sphere touches another sphere, up to a small gap, and its path leads into this other sphere.
-bool PairPlans::lies_on(std::uint32_t above, std::uint32_t below) const {
+bool PairPlans::is_resting_on(std::uint32_t above, std::uint32_t below) const {
     if (!is_free(above)) return false;
     const Vec3& center = alone_.center(below);
     const Vec3 apart = alone_.center(above) - center;
@@ -113,7 +113,7 @@ bool PairPlans::lies_on(std::uint32_t above, std::uint32_t below) const {
     return has_sunk(touching, smaller, apart, alone_.free_path(above).path.end - center);
 }
 
-/// Declares the paths and boxes that need no test by ask().
+/// Declares the paths and boxes that need no test by test_free_flight().
 void PairPlans::declare() {
     parallel_for_blocks(boxes_.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) {
@@ -124,7 +124,7 @@ void PairPlans::declare() {
     });
 }
 
-void PairPlans::ask(std::vector<std::uint32_t> particles) {
+void PairPlans::test_free_flight(std::vector<std::uint32_t> particles) {
     std::erase_if(particles, [&](std::uint32_t k) {
         if (freedom_[k] != Freedom::unknown) return true;
         freedom_[k] = Freedom::bound;  // until the test shows that it is free
@@ -146,7 +146,7 @@ void PairPlans::ask(std::vector<std::uint32_t> particles) {
 
 /// Returns true if two spheres meet when no other sphere deflects them.
 bool PairPlans::do_meet(const NeighbourPair& pair) const {
-    if (!overlap(place_of(pair.first), place_of(pair.second))) return false;
+    if (!overlap(occupied_box(pair.first), occupied_box(pair.second))) return false;
     if (!is_free(pair.first) || !is_free(pair.second)) return true;
     const FlownPiece first = alone_.free_path(pair.first);
     const FlownPiece second = alone_.free_path(pair.second);
@@ -160,7 +160,7 @@ bool PairPlans::do_meet(const NeighbourPair& pair) const {
 }
 
 bool PairPlans::comes_to(const IslandMember& member, std::uint32_t k) const {
-    if (!overlap(member.swept, place_of(k))) return false;
+    if (!overlap(member.swept, occupied_box(k))) return false;
     if (!is_free(k) || !member.has_left_bounds) return true;
     const FlownPiece trajectory = alone_.free_path(k);
     const double distance = member.radius() + alone_.radius(k);

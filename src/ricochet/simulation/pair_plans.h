@@ -35,20 +35,20 @@ public:
     /// Returns true if the spheres of a pair, given by its number, may meet.
     [[nodiscard]] bool may_meet(std::size_t pair) const { return met_[pair] != 0; }
     /// Returns true if a sphere is bound and may leave its declared box.
-    [[nodiscard]] bool may_roam(std::uint32_t k) const { return is_bound(k) && alone_.may_leave(boxes_[k]); }
+    [[nodiscard]] bool may_leave_box(std::uint32_t k) const { return is_bound(k) && alone_.may_leave(boxes_[k]); }
     /// Returns true if a sphere takes part in the step, can be moved, and does not fly freely.
     [[nodiscard]] bool is_bound(std::uint32_t k) const { return !boxes_[k].empty() && alone_.moves(k) && !is_free(k); }
 
     /// Appends all spheres whose boxes are near a box.
     void find_near(const Box3& box, std::vector<std::uint32_t>& found) const;
     /// Tests which of these spheres fly freely. Skips spheres for which this is known.
-    void ask(std::vector<std::uint32_t> particles);
-    /// Returns true if a sphere flies freely. ask() must have tested the sphere before. It has tested all spheres of
-    /// pairs().
+    void test_free_flight(std::vector<std::uint32_t> particles);
+    /// Returns true if a sphere flies freely. test_free_flight() must have tested the sphere before. It has tested all
+    /// spheres of pairs().
     [[nodiscard]] bool is_free(std::uint32_t k) const { return freedom_[k] == Freedom::free; }
     [[nodiscard]] const Box3& box(std::uint32_t k) const { return boxes_[k]; }
     /// Returns true if a member's path meets a sphere of another island that stays within its declared bounds. The
-    /// sphere must have been tested by ask().
+    /// sphere must have been tested by test_free_flight().
     [[nodiscard]] bool comes_to(const IslandMember& member, std::uint32_t k) const;
 
     /// Returns all free spheres that rest on spheres of `base`, directly or through other spheres, if the base keeps
@@ -58,13 +58,13 @@ public:
 private:
     enum class Freedom : std::uint8_t { unknown, free, bound };
 
-    [[nodiscard]] const Box3& place_of(std::uint32_t k) const {
+    [[nodiscard]] const Box3& occupied_box(std::uint32_t k) const {
         return alone_.is_asleep(k) ? sleepers_.box(k) : boxes_[k];
     }
     void declare();
     void collect_pairs();
     [[nodiscard]] bool expect_deflections();
-    [[nodiscard]] bool lies_on(std::uint32_t above, std::uint32_t below) const;
+    [[nodiscard]] bool is_resting_on(std::uint32_t above, std::uint32_t below) const;
     void add_pairs_with_sleepers();
     [[nodiscard]] bool do_meet(const NeighbourPair& pair) const;
 
@@ -72,7 +72,7 @@ private:
     LoneMotion alone_;
     std::vector<Freedom> freedom_;
     std::vector<Box3> boxes_;
-    NeighbourPairs near_;                 // pairs of boxes; spheres that ask() has not tested count as bound
+    NeighbourPairs near_;  // pairs of boxes; spheres that test_free_flight() has not tested count as bound
     std::vector<std::uint32_t> changed_;  // boxes that have changed since the last search in near_
     std::vector<NeighbourPair> pairs_;
     std::vector<std::uint8_t> met_;  // of the pairs

@@ -149,8 +149,8 @@ void ParticleStore::archive(Archive& a) {
         a(memory.side), a(memory.penetrating), a(memory.touching), a(memory.depth);
     };
     archive_entries(a, sides_, side_of, n * colliders_);
-    const auto attachment_of = [&](AttachmentMemory& ride) {
-        a(ride.stored_time), a(ride.is_attached), a(ride.attachment.position), a(ride.attachment.spin);
+    const auto attachment_of = [&](AttachmentMemory& memory) {
+        a(memory.stored_time), a(memory.is_attached), a(memory.attachment.position), a(memory.attachment.spin);
     };
     archive_entries(a, attachments_, attachment_of, keeps_attachments_ ? n : 0);
 }

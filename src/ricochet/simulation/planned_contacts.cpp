@@ -49,7 +49,7 @@ std::vector<SupportConstraints> PlannedContacts::find(const ParticleSystem& syst
             const SurfaceGeometry geometry(world_, scratch.plane_cache);
             const auto contact = find_first_contact(geometry, {path, radius}, scratch).contact;
             if (contact)
-                result[k] = held(
+                result[k] = find_supports(
                     {system.velocities()[k], velocities[k], spins[k], radius, duration, least_compliance * fastest},
                     *contact);
         }
@@ -57,17 +57,17 @@ std::vector<SupportConstraints> PlannedContacts::find(const ParticleSystem& syst
     return result;
 }
 
-std::vector<Vec3> PlannedContacts::bends(const ParticleSystem& system, const SystemStep& step,
-                                         std::span<const SupportConstraints> held) const {
+std::vector<Vec3> PlannedContacts::find_curvature_deviations(const ParticleSystem& system, const SystemStep& step,
+                                                             std::span<const SupportConstraints> supports) const {
     std::vector<Vec3> result(system.size());
     parallel_for_blocks(system.size(), kPlannedContactsBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         thread_local ContactScratch scratch;
         for (std::size_t k = begin; k < end; ++k) {
-            if (held[k].count != 1) continue;
-            const Vec3& n = held[k].directions[0];
+            if (supports[k].count != 1) continue;
+            const Vec3& n = supports[k].directions[0];
             const Vec3& at = step.positions[k];
             const double pressing = dot(step.velocities[k] - step.free_velocities[k], n);  // m/s
-            const double reach = step.duration * length(held[k].across(step.velocities[k]));
+            const double reach = step.duration * length(supports[k].across(step.velocities[k]));
             const Vec3 turned_over = (-pressing * step.duration * kLedBy) * n;
             result[k] = turned_over;
             if (!(reach > 2.0 * contact_offset(at))) {
@@ -90,16 +90,16 @@ std::vector<Vec3> PlannedContacts::bends(const ParticleSystem& system, const Sys
 /// rebounds, away from the surface. From the impact on, friction stops a point or makes a sphere roll, within the
 /// friction limit. Friction removes a share of the slip that would exist without friction. So friction is proportional
 /// to the remaining slip.
-SupportConstraints PlannedContacts::held(const Flown& flown, const Contact& contact) const {
-    SupportConstraints held;
+SupportConstraints PlannedContacts::find_supports(const Flown& flown, const Contact& contact) const {
+    SupportConstraints supports;
     const double part = contact.time / flown.duration;
     const Vec3& v = flown.velocity;
     double pressed = 0.0;  // m/s, sum over all normals
     double friction = 0.0;
     for (const ContactSurface& surface : contact.all()) {
-        if (held.count == held.directions.size()) break;
+        if (supports.count == supports.directions.size()) break;
         const double approach = -dot(v, surface.normal);
-        const Vec3 across = held.across(surface.normal);
+        const Vec3 across = supports.across(surface.normal);
         if (!(approach > 0.0) || !(length(across) > kIndependentSupport)) continue;
         const Material& material = materials_[world_.material_of(surface.surface)];
         // The change of the velocity by forces in this step does not count as impact speed.
@@ -108,19 +108,19 @@ SupportConstraints PlannedContacts::held(const Flown& flown, const Contact& cont
         rebound = rebound < resting_speed_ ? 0.0 : material.restitution_at(approach) * approach;
         const Vec3 n = normalized(across);
         const double along = (1.0 - part) * rebound - part * approach;  // along the surface's normal
-        held.directions[held.count++] = n;
-        held.velocity += ((along - dot(held.velocity, surface.normal)) / dot(n, surface.normal)) * n;
+        supports.directions[supports.count++] = n;
+        supports.velocity += ((along - dot(supports.velocity, surface.normal)) / dot(n, surface.normal)) * n;
         pressed += approach + rebound;
         friction = std::max(friction, material.friction);
     }
-    if (held.count == 0) return held;
+    if (supports.count == 0) return supports;
     const bool is_point = flown.radius == 0.0;
-    held.grip = (1.0 - part) * friction * pressed;
-    if (!(held.grip > 0.0)) return held;
-    held.spin_slip = held.across(cross(flown.spin, flown.radius * contact.first().normal));
+    supports.grip = (1.0 - part) * friction * pressed;
+    if (!(supports.grip > 0.0)) return supports;
+    supports.spin_slip = supports.across(cross(flown.spin, flown.radius * contact.first().normal));
     const double share = (1.0 - part) * (is_point ? 1.0 : kRollingShare);
-    held.yield = std::max(held.grip * (1.0 - share) / share, flown.least_compliance);
-    return held;
+    supports.yield = std::max(supports.grip * (1.0 - share) / share, flown.least_compliance);
+    return supports;
 }
 
 }  // namespace ricochet

@@ -34,12 +34,12 @@ public:
     /// curvature of surfaces. The deviation has two parts. The first part is the distance to the surface at the end of
     /// the step. The second part is the motion along the surface by a contact force whose direction turns with the
     /// surface.
-    [[nodiscard]] std::vector<Vec3> bends(const ParticleSystem& system, const SystemStep& step,
-                                          std::span<const SupportConstraints> held) const;
+    [[nodiscard]] std::vector<Vec3> find_curvature_deviations(const ParticleSystem& system, const SystemStep& step,
+                                                              std::span<const SupportConstraints> supports) const;
 
 private:
     struct Flown;
-    [[nodiscard]] SupportConstraints held(const Flown& flown, const struct Contact& contact) const;
+    [[nodiscard]] SupportConstraints find_supports(const Flown& flown, const struct Contact& contact) const;
 
     const CollisionWorld& world_;
     std::span<const Material> materials_;

@@ -34,23 +34,23 @@ std::uint64_t WorkCounts::work() const {
     return kQueriedWork * queried + kContactWork * contacts + kFlyingWork * flying + kIdleWork * idle;
 }
 
-RankTransfers gifts_of(std::size_t rank, const std::vector<std::uint64_t>& work) {
+RankTransfers transfers_of(std::size_t rank, const std::vector<std::uint64_t>& work) {
     const double mean = mean_of(work);
-    RankTransfers gifts(work.size(), 0.0);
+    RankTransfers transfers(work.size(), 0.0);
     std::size_t taker = 0;
     double room = std::max(0.0, mean - static_cast<double>(work[0]));
     for (std::size_t giver = 0; giver < work.size(); ++giver) {
         double rest = static_cast<double>(work[giver]) - mean;
         while (rest > 0.0 && taker < work.size()) {
-            const double gift = std::min(rest, room);
-            if (giver == rank) gifts[taker] += gift / static_cast<double>(work[giver]);
-            rest -= gift;
-            room -= gift;
+            const double transferred = std::min(rest, room);
+            if (giver == rank) transfers[taker] += transferred / static_cast<double>(work[giver]);
+            rest -= transferred;
+            room -= transferred;
             if (room > 0.0) break;
             if (++taker < work.size()) room = std::max(0.0, mean - static_cast<double>(work[taker]));
         }
     }
-    return gifts;
+    return transfers;
 }
 
 void RankBalancer::keep_account(const std::vector<std::uint64_t>& work) {
@@ -62,7 +62,7 @@ void RankBalancer::keep_account(const std::vector<std::uint64_t>& work) {
     balance_.busiest = mean_ > 0.0 ? busiest_ / mean_ : 1.0;
 }
 
-std::optional<RankTransfers> RankBalancer::look(Ranks& ranks, std::size_t here) {
+std::optional<RankTransfers> RankBalancer::check(Ranks& ranks, std::size_t here) {
     if (steps_++ < kSteps) return std::nullopt;
     steps_ = 1;
     std::vector<std::uint64_t> work(ranks.size() + 2, 0);
@@ -74,23 +74,23 @@ std::optional<RankTransfers> RankBalancer::look(Ranks& ranks, std::size_t here) 
     balance_.moved += work[ranks.size()];
     work.resize(ranks.size());
     keep_account(work);
-    if (looks_++ == 0) sum_.assign(ranks.size(), 0);
+    if (checks_++ == 0) sum_.assign(ranks.size(), 0);
     for (std::size_t rank = 0; rank < work.size(); ++rank) sum_[rank] += work[rank];
     const double excess = most_of(sum_) - mean_of(sum_);
-    const bool is_behind = most_of(sum_) > kMostBusy * mean_of(sum_) && excess >= kLeastGift;
-    const bool pays = looks_ == kLooks || excess >= kMoveWork * particles;
-    if (looks_ == kLooks || (is_behind && pays)) looks_ = 0;
+    const bool is_behind = most_of(sum_) > kMostBusy * mean_of(sum_) && excess >= kLeastExcess;
+    const bool pays = checks_ == kChecks || excess >= kMoveWork * particles;
+    if (checks_ == kChecks || (is_behind && pays)) checks_ = 0;
     if (!is_behind || !pays) return std::nullopt;
-    return gifts_of(ranks.rank(), sum_);
+    return transfers_of(ranks.rank(), sum_);
 }
 
 std::uint32_t TransferChoice::next(Cost cost) {
     if (cost == Cost::idle) return kStays;
     const double turn = static_cast<double>(seen_[static_cast<std::size_t>(cost)]++) * kGoldenPart;
     double left = turn - std::floor(turn);
-    for (std::size_t rank = 0; rank < gifts_.size(); ++rank) {
-        if (left < gifts_[rank]) return static_cast<std::uint32_t>(rank);
-        left -= gifts_[rank];
+    for (std::size_t rank = 0; rank < transfers_.size(); ++rank) {
+        if (left < transfers_[rank]) return static_cast<std::uint32_t>(rank);
+        left -= transfers_[rank];
     }
     return kStays;
 }

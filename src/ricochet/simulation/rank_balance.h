@@ -36,13 +36,13 @@ public:
     /// Number of steps between two checks. In more steps, a rank whose particles have children could fall far behind.
     static constexpr std::uint64_t kSteps = 4;
     /// Number of checks after which the sums of work start again from 0.
-    static constexpr std::uint64_t kLooks = 4;
+    static constexpr std::uint64_t kChecks = 4;
     /// Ratio of the busiest rank's work to the mean work above which particles change ranks. Local, because only the
     /// cost depends on it.
     static constexpr double kMostBusy = 1.1;
     /// Smallest work above the mean that is worth the communication: a tenth of a millisecond. Local, because only the
     /// cost depends on it.
-    static constexpr double kLeastGift = 1e4;
+    static constexpr double kLeastExcess = 1e4;
     /// Cost of inserting transferred particles into a rank, as work per particle of the rank. A smaller excess of work
     /// waits for more checks. Local, because only the cost depends on it.
     static constexpr double kMoveWork = 30.0;
@@ -50,7 +50,7 @@ public:
     void note(const WorkCounts& counts) { work_ += counts.work(); }
     /// Checks the balance if a check is due. Must be called by all ranks at the start of each step. here: number of
     /// particles of this rank. If all particles keep their ranks, returns nothing on every rank.
-    [[nodiscard]] std::optional<RankTransfers> look(Ranks& ranks, std::size_t here);
+    [[nodiscard]] std::optional<RankTransfers> check(Ranks& ranks, std::size_t here);
     /// Counts particles that have left this rank.
     void add_moved(std::uint64_t count) { moved_here_ += count; }
     [[nodiscard]] const RankBalance& balance() const { return balance_; }
@@ -61,7 +61,7 @@ private:
     std::uint64_t steps_ = 0;         // number of steps since the last check
     std::uint64_t work_ = 0;          // work of this rank since the last check
     std::uint64_t moved_here_ = 0;    // particles that have left this rank since the last check
-    std::uint64_t looks_ = 0;         // number of checks in sum_
+    std::uint64_t checks_ = 0;        // number of checks in sum_
     std::vector<std::uint64_t> sum_;  // work of each rank
     double busiest_ = 0.0;            // work of the busiest rank, summed over all checks
     double mean_ = 0.0;
@@ -70,7 +70,7 @@ private:
 
 /// Returns the transfers of a rank. The transfers of all ranks together give each rank the mean work. Ranks with too
 /// much work give to ranks with too little work, both in ascending order.
-[[nodiscard]] RankTransfers gifts_of(std::size_t rank, const std::vector<std::uint64_t>& work);
+[[nodiscard]] RankTransfers transfers_of(std::size_t rank, const std::vector<std::uint64_t>& work);
 
 /// Selects for each particle the rank to which it moves, or kStays. The same fraction of particles leaves from each
 /// cost class, spread evenly over the list. Idle particles stay.
@@ -79,12 +79,12 @@ public:
     static constexpr std::uint32_t kStays = ~std::uint32_t{0};
     enum class Cost : std::uint8_t { queried, flying, idle };
 
-    explicit TransferChoice(RankTransfers gifts) : gifts_(std::move(gifts)) {}
+    explicit TransferChoice(RankTransfers transfers) : transfers_(std::move(transfers)) {}
     /// Returns the selection for the next particle.
     [[nodiscard]] std::uint32_t next(Cost cost);
 
 private:
-    RankTransfers gifts_;
+    RankTransfers transfers_;
     std::uint64_t seen_[2] = {0, 0};
 };
 

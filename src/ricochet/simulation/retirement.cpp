@@ -15,12 +15,12 @@ class LeaverCounts {
 public:
     /// Counts a removed particle. lost: number of impulses of a sleeping particle's weight that were too large for the
     /// totals of triangles.
-    void add(RemovalReason departure, std::uint64_t lost) {
-        ++counts_[static_cast<std::size_t>(departure)];
+    void add(RemovalReason reason, std::uint64_t lost) {
+        ++counts_[static_cast<std::size_t>(reason)];
         lost_impulses_ += lost;
     }
     void add_to(SimulationStatistics& statistics) const {
-        const auto of = [this](RemovalReason departure) { return counts_[static_cast<std::size_t>(departure)]; };
+        const auto of = [this](RemovalReason reason) { return counts_[static_cast<std::size_t>(reason)]; };
         statistics.expired += of(RemovalReason::expired);
         statistics.absorbed += of(RemovalReason::absorbed);
         statistics.shattered += of(RemovalReason::shattered);
@@ -91,11 +91,11 @@ void Retirement::remove_leavers(double time) {
     std::vector<LeaverCounts> blocks(blocks_of(keep.size()));
     parallel_for_blocks(keep.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const RemovalReason departure = removal_reason(i, time);
-            if (departure == RemovalReason::none) continue;
+            const RemovalReason reason = removal_reason(i, time);
+            if (reason == RemovalReason::none) continue;
             keep[i] = 0;
             const double death = particles.birth_time[i] + particles.lifetime[i];
-            blocks[block].add(departure, mover_.sleepers().add_weight(i, std::min(time, death), 1.0));
+            blocks[block].add(reason, mover_.sleepers().add_weight(i, std::min(time, death), 1.0));
         }
     });
     for (const LeaverCounts& counts : blocks) counts.add_to(recorder_.statistics());

@@ -111,7 +111,8 @@ void RunRecorder::begin_step() {
 void RunRecorder::record(const std::vector<BlockRecord>& blocks) {
     for (const BlockRecord& block : blocks) {
         add_part(statistics_, block.counts);
-        batch_contacts_.insert(batch_contacts_.end(), block.contact_records.begin(), block.contact_records.end());
+        generation_contacts_.insert(generation_contacts_.end(), block.contact_records.begin(),
+                                    block.contact_records.end());
     }
     record_cut_off(blocks);
     record_violations(blocks);
@@ -169,7 +170,7 @@ void RunRecorder::list(const std::vector<Violation>& found) {
 
 void RunRecorder::end_generation(std::size_t particles) {
     statistics_.particle_steps += particles;
-    if (shows_contacts_) contacts_.insert(contacts_.end(), batch_contacts_.begin(), batch_contacts_.end());
+    if (shows_contacts_) contacts_.insert(contacts_.end(), generation_contacts_.begin(), generation_contacts_.end());
 }
 
 // The sort is stable, because the impacts of one particle are already in the order of events.

@@ -169,7 +169,7 @@ public:
         violations_ = violations;
     }
     /// Begins a spawn generation, whose particles are moved next.
-    void begin_generation() { batch_contacts_.clear(); }
+    void begin_generation() { generation_contacts_.clear(); }
     /// Adds the results of blocks in a substep.
     void record(const std::vector<BlockRecord>& blocks);
     /// Ends a spawn generation. particles: number of moved particles.
@@ -180,7 +180,7 @@ public:
 
     [[nodiscard]] bool collects_contacts() const { return shows_contacts_ || collects_contacts_; }
     [[nodiscard]] std::vector<ContactRecord>& contact_records() { return contacts_; }
-    [[nodiscard]] const std::vector<ContactRecord>& batch_contacts() const { return batch_contacts_; }
+    [[nodiscard]] const std::vector<ContactRecord>& generation_contacts() const { return generation_contacts_; }
     [[nodiscard]] const std::vector<Violation>& violations() const { return violations_; }
     [[nodiscard]] const std::vector<Violation>& last_violations() const { return last_violations_; }
     [[nodiscard]] const SimulationStatistics& statistics() const { return statistics_; }
@@ -205,9 +205,9 @@ private:
     SimulationStatistics statistics_;
     SurfaceTotals totals_;
     std::vector<ColliderTotals> loads_;
-    std::vector<ContactRecord> contacts_;         // of the step
-    std::vector<ContactRecord> batch_contacts_;   // of the spawn generation that was moved last
-    std::vector<PairImpactRecord> pair_records_;  // of the step
+    std::vector<ContactRecord> contacts_;             // of the step
+    std::vector<ContactRecord> generation_contacts_;  // of the spawn generation that was moved last
+    std::vector<PairImpactRecord> pair_records_;      // of the step
     std::vector<Violation> violations_;
     std::vector<Violation> last_violations_;  // of the step
     bool shows_contacts_;

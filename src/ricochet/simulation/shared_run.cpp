@@ -63,12 +63,12 @@ void SharedRun::take_share() {
 }
 
 void SharedRun::begin_step(const TimeSpan& /*step*/) {
-    std::optional<RankTransfers> gifts = balancer_.look(parts_.share.ranks(), parts_.population.size());
-    if (!gifts) return;
+    std::optional<RankTransfers> transfers = balancer_.check(parts_.share.ranks(), parts_.population.size());
+    if (!transfers) return;
     FreeFlights& flights = parts_.population.flights();
     const bool defers = flights.is_deferring();
     flights.end_deferring();
-    give_away(TransferChoice(std::move(*gifts)));
+    give_away(TransferChoice(std::move(*transfers)));
     if (defers) flights.begin_deferring();
 }
 

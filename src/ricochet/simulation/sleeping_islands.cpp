@@ -35,7 +35,7 @@ bool SleepingIslands::is_sound(std::uint64_t next_id, std::size_t surfaces) cons
         return s.particle < next_id && s.sleeping_island <= s.particle;
     };
     const auto is_weight_sound = [&](const Weight& w) {
-        return has(w.particle) && w.surface < surfaces && is_finite(w.force);
+        return is_asleep(w.particle) && w.surface < surfaces && is_finite(w.force);
     };
     const auto has_sleeper = [](const Ends& ends) { return ends.first != kNobody || ends.second != kNobody; };
     return ascend(sleepers_) && ascend(sleep_counters_) &&
@@ -76,7 +76,7 @@ void SleepingIslands::add(const std::vector<std::uint64_t>& particles,
     for (const WarmStartMemory::Entry& entry : contacts_.entries()) {
         const ContactKey& key = entry.key;
         const bool is_of_falling = falling.contains(key.particle) || falling.contains(key.other);
-        const bool leans = !key.is_wall() && (has(key.particle) || has(key.other));
+        const bool leans = !key.is_wall() && (is_asleep(key.particle) || is_asleep(key.other));
         if (!is_of_falling) all.push_back(entry);
         if (is_of_falling && leans && now.find(key) == nullptr) all.push_back({key, {}, false});
     }
@@ -89,7 +89,7 @@ void SleepingIslands::add(const std::vector<std::uint64_t>& particles,
     std::vector<ContactKey> joined;
     for (const WarmStartMemory::Entry& entry : contacts_.entries()) joined.push_back(entry.key);
     join(joined);
-    look_at_contacts();
+    analyse_contacts();
     ++version_;
 }
 
@@ -112,9 +112,9 @@ void SleepingIslands::join(const std::vector<ContactKey>& touching) {
 }
 
 /// Finds the contacts of sleepers with awake spheres, the largest loads of sleepers, and the neighbours of sleepers.
-void SleepingIslands::look_at_contacts() {
+void SleepingIslands::analyse_contacts() {
     find_ends();
-    edges_.clear();
+    edge_contacts_.clear();
     for (Sleeper& sleeper : sleepers_) sleeper.load = 0.0;
     const auto press = [&](std::uint32_t slot, double normal) {
         if (slot != kNobody) sleepers_[slot].load = std::max(sleepers_[slot].load, normal);
@@ -124,7 +124,8 @@ void SleepingIslands::look_at_contacts() {
         const auto& [first, second] = ends_[i];
         press(first, entries[i].impulse.normal);
         press(second, entries[i].impulse.normal);
-        if (!entries[i].key.is_wall() && (first == kNobody) != (second == kNobody)) edges_.push_back(entries[i]);
+        if (!entries[i].key.is_wall() && (first == kNobody) != (second == kNobody))
+            edge_contacts_.push_back(entries[i]);
     }
     find_neighbours();
 }
@@ -226,7 +227,7 @@ std::vector<WarmStartMemory::Entry> SleepingIslands::wake(const std::vector<std:
     keep_marked(sleepers_, sleeps_on);
     find_slots();
     contacts_.replace(others);
-    look_at_contacts();
+    analyse_contacts();
     ++version_;
     return theirs;
 }

@@ -29,7 +29,7 @@ public:
     };
 
     [[nodiscard]] bool empty() const { return sleepers_.empty(); }
-    [[nodiscard]] bool has(std::uint64_t particle) const { return find(particle) != nullptr; }
+    [[nodiscard]] bool is_asleep(std::uint64_t particle) const { return find(particle) != nullptr; }
     /// Returns the ids of all sleepers, ascending.
     [[nodiscard]] std::vector<std::uint64_t> particles() const;
     /// Returns a number that changes whenever the set of sleepers changes.
@@ -45,7 +45,7 @@ public:
     /// Returns the contacts of sleepers, in the state in which the sleepers fell asleep.
     [[nodiscard]] const WarmStartMemory& contacts() const { return contacts_; }
     /// Returns the contacts of sleepers with awake spheres, ascending. A step needs to examine only these contacts.
-    [[nodiscard]] const std::vector<WarmStartMemory::Entry>& edges() const { return edges_; }
+    [[nodiscard]] const std::vector<WarmStartMemory::Entry>& edge_contacts() const { return edge_contacts_; }
 
     [[nodiscard]] std::uint32_t sleep_counter(std::uint64_t particle) const;
     /// Sets the counters at the end of a step. The list can have any order. Spheres that are not in the list have
@@ -81,7 +81,7 @@ public:
         archive_entries(a, weights_, [&](Weight& weight) { a(weight.particle), a(weight.surface), a(weight.force); });
         contacts_.archive(a);
         find_slots();
-        look_at_contacts();
+        analyse_contacts();
         ++version_;
     }
 
@@ -122,7 +122,7 @@ private:
                                                          bool must_press) const;
     [[nodiscard]] std::vector<std::uint64_t> marked(const std::vector<std::uint8_t>& marks, std::uint8_t mark) const;
     void find_slots();
-    void look_at_contacts();
+    void analyse_contacts();
     void find_ends();
     void find_neighbours();
 
@@ -132,7 +132,7 @@ private:
     std::vector<Weight> weights_;
     WarmStartMemory contacts_;
     std::vector<Ends> ends_;  // of each contact
-    std::vector<WarmStartMemory::Entry> edges_;
+    std::vector<WarmStartMemory::Entry> edge_contacts_;
     std::vector<Neighbour> neighbours_;  // particles in contact with sleepers, sleeper by sleeper
     std::vector<std::uint32_t> first_;   // per sleeper: start of its entries in neighbours_; then the end
     std::uint64_t version_ = 0;

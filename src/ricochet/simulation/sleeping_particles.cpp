@@ -14,7 +14,7 @@ std::uint64_t SleepingParticles::add_weight(std::size_t i, double until, double 
     std::vector<SurfaceHit> hits;
     const std::uint64_t id = store_.particles().id[i];
     const SleepingIslands* const sleeping_islands = observers_.sleeping_islands;
-    if (sleeping_islands != nullptr && sleeping_islands->has(id)) {
+    if (sleeping_islands != nullptr && sleeping_islands->is_asleep(id)) {
         sleeping_islands->add_weight(id, elapsed, hits);
     } else if (store_.is_asleep(i)) {
         MovingParticle sleeper = store_.load(i, until, true);
@@ -29,7 +29,7 @@ void SleepingParticles::add_weights(double until, double sign) {
     for (std::size_t i = 0; i < store_.size(); ++i) (void)add_weight(i, until, sign);
 }
 
-void SleepingParticles::press(std::span<const SurfaceHit> hits) {
+void SleepingParticles::add_to_totals(std::span<const SurfaceHit> hits) {
     SurfaceTotals& totals = recorder_.totals();
     if (!totals.empty()) recorder_.statistics().lost_impulses += totals.add(hits);
 }

@@ -30,7 +30,7 @@ public:
     /// Calls add_weight() for all particles.
     void add_weights(double until, double sign);
     /// Adds impulses to the totals of surfaces.
-    void press(std::span<const SurfaceHit> hits);
+    void add_to_totals(std::span<const SurfaceHit> hits);
     /// Wakes a sphere that has slept on other spheres, at a time, in s. Must be called before the sleeping islands
     /// remove the sphere.
     void wake(std::size_t i, double time);

@@ -80,7 +80,7 @@ void TransmittedLoads::share_out(const SleepingIslands& sleeping_islands, const 
         hits.push_back(
             {weight.surface, share_of(weight, total->second, holding[sleeping_island]) * total->second, false});
     }
-    parts_.mover.sleepers().press(hits);
+    parts_.mover.sleepers().add_to_totals(hits);
 }
 
 /// Computes the balance of each island. The stored forces are not in balance if spheres fell asleep at different times
@@ -106,9 +106,9 @@ void TransmittedLoads::find_balances(const SleepingIslands& sleeping_islands, co
 /// Adds the forces of pinned spheres. They have not changed since the island fell asleep.
 void TransmittedLoads::add_contacts(const SleepingIslands& sleeping_islands, const TimeSpan& step) {
     const std::vector<Vec3>& position = parts_.store.particles().position;
-    for (const WarmStartMemory::Entry& entry : sleeping_islands.edges()) {
+    for (const WarmStartMemory::Entry& entry : sleeping_islands.edge_contacts()) {
         const ContactKey& key = entry.key;
-        const bool is_first = sleeping_islands.has(key.particle);
+        const bool is_first = sleeping_islands.is_asleep(key.particle);
         const std::optional<std::size_t> first = parts_.store.index_of(key.particle);
         const std::optional<std::size_t> second = parts_.store.index_of(key.other);
         if (!first || !second) continue;

@@ -229,7 +229,7 @@ Image RunPictures::picture(double time, const PictureOptions& options) {
         if (group.drawing->is_flat()) add_flat(frame, group, layers);
     }
     add_moving(std::move(moment.moving), moving);
-    preview_->set_moving(std::move(moving), options.quick ? SphereRays::left_out : SphereRays::met);
+    preview_->set_moving(std::move(moving), options.quick ? SphereRays::skipped : SphereRays::traced);
     return render_picture(*preview_, camera_, options, layers);
 }
 

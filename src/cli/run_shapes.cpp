@@ -211,7 +211,7 @@ std::vector<double> RunPictures::sprite_angles(const VtkPolyData& frame, const G
     std::vector<double> angles(group.shown.size(), 0.0);
     for (std::size_t k = 0; k < angles.size(); ++k) {
         const std::size_t i = group.shown[k];
-        const OwnTurning own = own_turning(id_of(ids, i));
+        const ParticleTurning own = particle_turning(id_of(ids, i));
         if (shape.facing == ParticleShape::Facing::random) {
             angles[k] = own.angle;
         } else if (shape.facing == ParticleShape::Facing::velocity) {

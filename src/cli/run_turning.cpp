@@ -20,9 +20,9 @@ const std::vector<Value>* column(const VtkPolyData& frame, const char* name) {
 
 Turn RunTurning::turn_at(std::int64_t id, const Vec3& spin, double age, double time) const {
     const auto found = known_.find(id);
-    if (found == known_.end()) return turned_on(random_turn(static_cast<std::uint64_t>(id)), spin, age);
+    if (found == known_.end()) return rotation_after(random_turn(static_cast<std::uint64_t>(id)), spin, age);
     const Spinning& before = found->second;
-    return turned_on(before.turn, 0.5 * (before.spin + spin), time - time_);
+    return rotation_after(before.turn, 0.5 * (before.spin + spin), time - time_);
 }
 
 void RunTurning::go_on(const VtkPolyData& frame) {
@@ -74,10 +74,10 @@ std::vector<Turn> RunTurning::shown_turns(const VtkPolyData& moment,
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (spins && radii != nullptr && (*radii)[i] > 0.0) continue;
         const auto id = static_cast<std::uint64_t>(ids != nullptr ? (*ids)[i] : static_cast<std::int64_t>(i));
-        const OwnTurning own = own_turning(id);
+        const ParticleTurning own = particle_turning(id);
         const MeanSpread turning = turning_of(i);
         const double rate = turning.mean + own.spread * turning.spread;
-        all[i] = turned_on(random_turn(id), rate * own.axis, ages != nullptr ? (*ages)[i] : 0.0);
+        all[i] = rotation_after(random_turn(id), rate * own.axis, ages != nullptr ? (*ages)[i] : 0.0);
     }
     return all;
 }

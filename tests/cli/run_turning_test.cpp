@@ -46,7 +46,7 @@ TEST(RunTurning, RotationInFreeFlightIsTheSpinTimesTheAge) {
         const Moment moment = timeline.at(time, 0.0);
         const std::vector<Turn> turns = turning.turns(moment.frame);
         ASSERT_EQ(turns.size(), 2U);
-        EXPECT_LT(apart(turns[0], turned_on(random_turn(0), {3, -1, 2}, time)), 1e-9) << time;
+        EXPECT_LT(apart(turns[0], rotation_after(random_turn(0), {3, -1, 2}, time)), 1e-9) << time;
         EXPECT_LT(apart(turns[1], random_turn(1)), 1e-12);
         RunTurning fresh(run.frames);
         EXPECT_EQ(apart(fresh.turns(moment.frame)[0], turns[0]), 0.0) << time;

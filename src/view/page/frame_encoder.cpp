@@ -27,12 +27,12 @@ bool is_kept(std::int64_t id, const RunSurvey& survey, double part) {
 
 // Returns the rows of a frame that go into the page.
 std::vector<std::uint32_t> kept_rows(const VtkPolyData& frame, const std::vector<std::int64_t>& ids,
-                                     const RunSurvey& survey, double part, std::uint64_t& left_out) {
+                                     const RunSurvey& survey, double part, std::uint64_t& outside_count) {
     std::vector<std::uint32_t> rows;
     rows.reserve(ids.size());
     for (std::uint32_t row = 0; row < ids.size(); ++row) {
         if (!survey.box.contains(frame.points[row])) {
-            ++left_out;
+            ++outside_count;
         } else if (is_kept(ids[row], survey, part)) {
             rows.push_back(row);
         }
@@ -141,7 +141,7 @@ PageFrame page_frame(const FrameFile& file, const RunSurvey& survey, const PageD
     const VtkPolyData frame = read_frame(file.path);
     const std::vector<std::int64_t>& ids = frame_ids(frame, file);
     PageFrame page;
-    const std::vector<std::uint32_t> rows = kept_rows(frame, ids, survey, detail.particles, page.left_out);
+    const std::vector<std::uint32_t> rows = kept_rows(frame, ids, survey, detail.particles, page.outside_count);
     page.ids.reserve(rows.size());
     for (const std::uint32_t row : rows) page.ids.push_back(ids[row]);
     add_positions(page, frame, rows, survey, detail.position_bits);

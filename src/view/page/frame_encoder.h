@@ -48,7 +48,7 @@ struct PageFrame {
     std::vector<VtkLine> lines;    ///< springs; ends are rows
     std::vector<Triangle> triangles;
     MovingFrame moving;
-    std::uint64_t left_out = 0;  ///< number of particles outside the survey's box
+    std::uint64_t outside_count = 0;  ///< number of particles outside the survey's box
 };
 
 /// Reads and quantizes a frame. Safe to call from several threads.

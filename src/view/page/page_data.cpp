@@ -19,12 +19,12 @@ namespace {
 
 constexpr std::size_t kGroup = 8;  // number of frames that are in memory at the same time
 
-// An estimate of the bytes encodes kStretches samples of kStretchFrames consecutive frames each. The first
-// kStretchStart frames of a sample do not count, because the encoder has too few earlier frames to predict their
+// An estimate of the bytes encodes kEstimateSamples samples of kSampleFrames consecutive frames each. The first
+// kSampleStart frames of a sample do not count, because the encoder has too few earlier frames to predict their
 // values.
-constexpr std::size_t kStretches = 3;
-constexpr std::size_t kStretchFrames = 5;
-constexpr std::size_t kStretchStart = 2;
+constexpr std::size_t kEstimateSamples = 3;
+constexpr std::size_t kSampleFrames = 5;
+constexpr std::size_t kSampleStart = 2;
 constexpr double kEstimateMargin = 1.03;
 
 // Returns the frames for which the file of the moving colliders exists. A run that was killed while it wrote a frame
@@ -88,13 +88,13 @@ int least_position_bits(const RunSurvey& survey) {
 // Estimates the bytes of all frames in the page from a few frames.
 double estimated_bytes(const PageSource& source, const PageDetail& detail) {
     const std::vector<std::size_t> chosen = detail.chosen_frames(source.frames.size());
-    const bool is_short = chosen.size() <= kStretches * kStretchFrames;
-    const std::size_t stretches = is_short ? 1 : kStretches;
-    const std::size_t length = is_short ? chosen.size() : kStretchFrames;
+    const bool is_short = chosen.size() <= kEstimateSamples * kSampleFrames;
+    const std::size_t samples = is_short ? 1 : kEstimateSamples;
+    const std::size_t length = is_short ? chosen.size() : kSampleFrames;
     double bytes = 0.0;
     double rows = 0.0;
-    for (std::size_t s = 0; s < stretches; ++s) {
-        const std::size_t begin = is_short ? 0 : s * (chosen.size() - length) / (stretches - 1);
+    for (std::size_t s = 0; s < samples; ++s) {
+        const std::size_t begin = is_short ? 0 : s * (chosen.size() - length) / (samples - 1);
         std::vector<PageFrame> frames(length);
         parallel_for_blocks(length, 1, [&](std::size_t i, std::size_t, std::size_t) {
             frames[i] = page_frame(source.frames[chosen[begin + i]], source.survey, detail, source.colliders);
@@ -102,7 +102,7 @@ double estimated_bytes(const PageSource& source, const PageDetail& detail) {
         FrameEncoder encoder(source.survey, detail, source.colliders);
         for (std::size_t i = 0; i < length; ++i) {
             const std::string block = encoder.encode(frames[i]);
-            if (!is_short && i < kStretchStart) continue;
+            if (!is_short && i < kSampleStart) continue;
             bytes += 4.0 / 3.0 * static_cast<double>(deflated(block).size());
             rows += 100.0 + static_cast<double>(source.survey.counts[chosen[begin + i]]);
         }
@@ -130,7 +130,7 @@ std::optional<PageFrames> packed_frames(const PageSource& source, const PageDeta
         for (const PageFrame& frame : frames) {
             blocks.push_back(encoder.encode(frame));
             result.counts.push_back(frame.ids.size());
-            result.left_out += frame.left_out;
+            result.outside_count += frame.outside_count;
         }
         parallel_for_blocks(count, 1,
                             [&](std::size_t i, std::size_t, std::size_t) { blocks[i] = base64(deflated(blocks[i])); });

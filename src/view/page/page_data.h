@@ -34,7 +34,7 @@ struct PageFrames {
     std::vector<std::string> blocks;
     std::vector<std::size_t> counts;  ///< number of particles in each frame
     /// Number of particles that are not shown because they are too far from all others, summed over the frames.
-    std::uint64_t left_out = 0;
+    std::uint64_t outside_count = 0;
 };
 
 /// Returns the frames with the most detail that fits into the given bytes. Throws InputError with the budget if

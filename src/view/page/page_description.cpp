@@ -48,7 +48,7 @@ ordered_json part_json(const ColliderPart& part, const Vec3& origin, int bits) {
                          {"triangles", part.mesh.triangles.size()},
                          {"grid", grid_json(part_grid(part, 16), origin)},
                          {"frameGrid", grid_json(part_grid(part, bits), origin)},
-                         {"error", told_error(part, bits)}};
+                         {"error", vertex_rounding_error(part, bits)}};
     if (part.color) json["color"] = triple(*part.color);
     if (part.plane_normal) {
         json["planeNormal"] = triple(*part.plane_normal);

@@ -22,7 +22,7 @@ PositionGrid part_grid(const ColliderPart& part, int bits) {
     return position_grid(box, bits);
 }
 
-double told_error(const ColliderPart& part, int bits) {
+double vertex_rounding_error(const ColliderPart& part, int bits) {
     if (part.motion == PartMotion::deforming) return rounding_distance(part_grid(part, bits).step);
     const PositionGrid grid = part_grid(part, kVertexBits);
     double largest = 0.0;

@@ -20,7 +20,7 @@ namespace ricochet {
 
 /// Returns the largest distance, in m, by which rounding moves a vertex of the part on the page. `bits` is the number
 /// of bits per coordinate in frames.
-[[nodiscard]] double told_error(const ColliderPart& part, int bits);
+[[nodiscard]] double vertex_rounding_error(const ColliderPart& part, int bits);
 
 /// Encoder of the moving colliders in a frame's block. The pose of a rigid collider takes twelve 32-bit floats: three
 /// rows of the rotation, each followed by the translation along its axis. The vertices of a deforming collider take

@@ -73,10 +73,10 @@ std::vector<std::string> notes_of(const PageSource& source, const PageFrames& fr
     if (!thinned.empty()) {
         notes.push_back(fmt::format("to fit into {:g} MB: {}", options.budget / 1e6, thinned));
     }
-    if (frames.left_out > 0) {
+    if (frames.outside_count > 0) {
         const auto total = static_cast<double>(std::max<std::uint64_t>(source.survey.total(), 1));
         notes.push_back(fmt::format("{:.2g} % of the particles are too far from all others to be shown",
-                                    100.0 * static_cast<double>(frames.left_out) / total));
+                                    100.0 * static_cast<double>(frames.outside_count) / total));
     }
     if (source.frames.size() < source.folder.frames.size()) {
         notes.push_back(fmt::format("{} frames lack the moving colliders and are left out",

@@ -133,7 +133,7 @@ Box3 shown_box(const Box3& all, Box3 bulk) {
     return {max(all.lower, bulk.lower - margin), min(all.upper, bulk.upper + margin)};
 }
 
-void settle(PageAttribute& attribute, ArrayFacts facts) {
+void set_ranges(PageAttribute& attribute, ArrayFacts facts) {
     attribute.has_gaps = facts.has_gaps;
     if (facts.low > facts.high) return;  // the attribute has no finite value
     attribute.shown = robust_range(std::move(facts.sample));
@@ -185,7 +185,7 @@ RunSurvey joined(std::vector<FrameFacts>& facts, std::vector<PageAttribute> attr
     if (!colliders.empty()) bulk.include(colliders);
     survey.box = shown_box(all, bulk);
     survey.origin = bulk.empty() ? Vec3{} : bulk.center();
-    for (std::size_t a = 0; a < arrays.size(); ++a) settle(attributes[a], std::move(arrays[a]));
+    for (std::size_t a = 0; a < arrays.size(); ++a) set_ranges(attributes[a], std::move(arrays[a]));
     survey.attributes = std::move(attributes);
     return survey;
 }

@@ -105,7 +105,8 @@ std::vector<std::string> broken_text(const std::string& text, std::size_t letter
     return lines;
 }
 
-std::vector<BarPosition> bar_places(int picture_width, int picture_height, const std::vector<ColorBar>& bars) {
+std::vector<BarPosition> compute_bar_positions(int picture_width, int picture_height,
+                                               const std::vector<ColorBar>& bars) {
     const int dot = dot_of(picture_width, picture_height);
     std::vector<BarPosition> bar_positions;
     int x = 2 * kColorBarMargin;       // left edge of the next bar, in dots
@@ -128,7 +129,7 @@ std::vector<BarPosition> bar_places(int picture_width, int picture_height, const
 
 void draw_color_bars(Image& image, const std::vector<ColorBar>& bars) {
     if (image.width < 200 || image.height < 100) return;
-    const std::vector<BarPosition> bar_positions = bar_places(image.width, image.height, bars);
+    const std::vector<BarPosition> bar_positions = compute_bar_positions(image.width, image.height, bars);
     for (std::size_t k = 0; k < bars.size(); ++k) draw_bar(image, bars[k], bar_positions[k]);
 }
 

@@ -31,8 +31,8 @@ struct BarPosition {
 
 /// Returns the positions of the bars of a picture. Each bar is at least as wide as its texts. Bars are placed side by
 /// side. If the picture is too narrow, the next bars are placed in a new row above.
-[[nodiscard]] std::vector<BarPosition> bar_places(int picture_width, int picture_height,
-                                                  const std::vector<ColorBar>& bars);
+[[nodiscard]] std::vector<BarPosition> compute_bar_positions(int picture_width, int picture_height,
+                                                             const std::vector<ColorBar>& bars);
 
 /// Breaks a text into lines of at most `letters` characters, between words if possible.
 [[nodiscard]] std::vector<std::string> broken_text(const std::string& text, std::size_t letters);

@@ -19,7 +19,7 @@ Vec3 between(const PathNode& a, const PathNode& b, double time) {
 // Returns an upper bound of the deviation of the path from its chord. The bound is an eighth of the largest second
 // derivative times the square of the duration. The second derivative of a cubic is linear, so its magnitude is largest
 // at one of the ends.
-double bend(const PathNode& a, const PathNode& b) {
+double deviation_bound(const PathNode& a, const PathNode& b) {
     const Vec3 derivative = 6.0 * (b.position - a.position);
     const double span = b.time - a.time;
     const Vec3 at_a = derivative - span * (4.0 * a.velocity_after + 2.0 * b.velocity_before);
@@ -48,7 +48,7 @@ std::vector<PathPoint> path_points(std::span<const PathNode> nodes, double from,
         double pieces = 1.0;
         if (k > 0 && k < nodes.size()) {
             const double part = (end - begin) / (nodes[k].time - nodes[k - 1].time);
-            const double needed = std::sqrt(bend(nodes[k - 1], nodes[k]) / sagitta) * part;
+            const double needed = std::sqrt(deviation_bound(nodes[k - 1], nodes[k]) / sagitta) * part;
             pieces = std::clamp(std::ceil(needed), 1.0, kMostPieces);
         }
         for (double i = 1.0; i < pieces; i += 1.0) {

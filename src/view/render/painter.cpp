@@ -37,31 +37,31 @@ void Painter::pixels(std::span<const PixelPosition> pixel_positions, std::span<P
                      const KnownSpheres& known) const {
     std::array<std::optional<PixelSamples>, kPacketRays> samples;
     std::vector<PixelSum> sums(pixel_positions.size(), PixelSum(options_.exposure));
-    std::array<Look, kPacketRays> room;
+    std::array<SampleState, kPacketRays> room;
     Hits hits;
-    const std::span looks(room.data(), pixel_positions.size());
+    const std::span states(room.data(), pixel_positions.size());
     for (std::size_t k = 0; k < pixel_positions.size(); ++k) {
         samples[k].emplace(pixel_positions[k].x, pixel_positions[k].y);
-        looks[k].samples = &*samples[k];
+        states[k].samples = &*samples[k];
     }
     for (int s = 0; s < options_.samples; ++s) {
-        for (std::size_t k = 0; k < pixel_positions.size(); ++k) aim(looks[k], pixel_positions[k], s);
-        trace(looks, known, hits);
-        add_sun_light(looks, known.shadows);
-        add_sky_light(looks, known.shadows);
-        for (std::size_t k = 0; k < pixel_positions.size(); ++k) add(looks[k], sums[k]);
+        for (std::size_t k = 0; k < pixel_positions.size(); ++k) aim(states[k], pixel_positions[k], s);
+        trace(states, known, hits);
+        add_sun_light(states, known.shadows);
+        add_sky_light(states, known.shadows);
+        for (std::size_t k = 0; k < pixel_positions.size(); ++k) add(states[k], sums[k]);
     }
-    if (options_.samples < kGlances) add_glances(pixel_positions, looks, sums, known);
+    if (options_.samples < kMostPixelRays) add_extra_rays(pixel_positions, states, sums, known);
     for (std::size_t k = 0; k < pixel_positions.size(); ++k) out[k] = sums[k].mean();
 }
 
 // Sets the camera ray for a sample of a pixel.
-void Painter::aim(Look& look, const PixelPosition& pixel_position, int sample) const {
-    look.sample = sample;
-    const SamplePair at = look.get(SamplePurpose::pixel);
-    const SamplePair lens = camera_.aperture > 0.0 ? look.get(SamplePurpose::lens) : SamplePair{};
-    look.ray = camera_ray(pixel_position.x + at.u, pixel_position.y + at.v, lens);
-    look.ray.time = look.samples->time(sample);
+void Painter::aim(SampleState& state, const PixelPosition& pixel_position, int sample) const {
+    state.sample = sample;
+    const SamplePair at = state.get(SamplePurpose::pixel);
+    const SamplePair lens = camera_.aperture > 0.0 ? state.get(SamplePurpose::lens) : SamplePair{};
+    state.ray = camera_ray(pixel_position.x + at.u, pixel_position.y + at.v, lens);
+    state.ray.time = state.samples->time(sample);
 }
 
 // Returns the number of extra rays per pixel. A pixel gets extra rays if its samples differ or can have missed an
@@ -90,59 +90,59 @@ std::array<int, kPacketRays> Painter::rays_wanted(std::span<const PixelPosition>
 }
 
 // Traces the extra camera rays of the pixels, with shadow rays to the sun, and adds the results to `sums`.
-void Painter::add_glances(std::span<const PixelPosition> pixel_positions, std::span<Look> looks,
-                          std::span<PixelSum> sums, const KnownSpheres& known) const {
-    std::array<Look, kPacketRays> room;
+void Painter::add_extra_rays(std::span<const PixelPosition> pixel_positions, std::span<SampleState> states,
+                             std::span<PixelSum> sums, const KnownSpheres& known) const {
+    std::array<SampleState, kPacketRays> room;
     Hits hits;
     std::array<PixelSum*, kPacketRays> whose{};
     std::size_t count = 0;
-    const auto look_at_all = [&] {
+    const auto trace_all = [&] {
         trace(std::span(room.data(), count), known, hits);
         add_sun_light(std::span(room.data(), count), known.shadows);
-        for (std::size_t j = 0; j < count; ++j) whose[j]->add(glance(room[j]));
+        for (std::size_t j = 0; j < count; ++j) whose[j]->add(camera_ray_result(room[j]));
         count = 0;
     };
     const std::array<int, kPacketRays> wanted = rays_wanted(pixel_positions, sums, known);
     for (std::size_t k = 0; k < pixel_positions.size(); ++k) {
-        const int end = std::min(kGlances, options_.samples + wanted[k]);
+        const int end = std::min(kMostPixelRays, options_.samples + wanted[k]);
         for (int s = options_.samples; s < end; ++s) {
-            room[count].samples = looks[k].samples;
+            room[count].samples = states[k].samples;
             aim(room[count], pixel_positions[k], s);
             whose[count++] = &sums[k];
-            if (count == kPacketRays) look_at_all();
+            if (count == kPacketRays) trace_all();
         }
     }
-    if (count > 0) look_at_all();
+    if (count > 0) trace_all();
 }
 
-void Painter::add(const Look& look, PixelSum& sum) const {
-    const bool open = options_.transparent && !look.hit;
-    const Vec3 light = open ? Vec3{} : solid_light(look);
-    const Seen seen = through_glass(look.ray, look.hit ? look.hit->distance : kNothing, light);
-    sum.add(glance(look), light, tone_mapped(options_.exposure * seen.light), open ? seen.cover : 1.0);
+void Painter::add(const SampleState& state, PixelSum& sum) const {
+    const bool open = options_.transparent && !state.hit;
+    const Vec3 light = open ? Vec3{} : solid_light(state);
+    const Seen seen = through_glass(state.ray, state.hit ? state.hit->distance : kNothing, light);
+    sum.add(camera_ray_result(state), light, tone_mapped(options_.exposure * seen.light), open ? seen.cover : 1.0);
 }
 
-Glance Painter::glance(const Look& look) const {
-    Glance out;
-    const bool is_one_of_few = options_.samples < kGlances;
-    if (!look.hit) {
+CameraRayResult Painter::camera_ray_result(const SampleState& state) const {
+    CameraRayResult out;
+    const bool is_one_of_few = options_.samples < kMostPixelRays;
+    if (!state.hit) {
         out.covers = !options_.transparent;
-        if (out.covers && is_one_of_few) out.own = behind_everything(look.ray.direction);
+        if (out.covers && is_one_of_few) out.own = behind_everything(state.ray.direction);
         return out;
     }
-    const PreviewHit& hit = *look.hit;
+    const PreviewHit& hit = *state.hit;
     const double pixel_size = 2.0 * tangent_ * hit.distance / options_.height;
-    const double facing = std::max(0.05, std::fabs(dot(hit.face, look.ray.direction)));
+    const double facing = std::max(0.05, std::fabs(dot(hit.face, state.ray.direction)));
     out.normal = hit.normal;
-    out.albedo = look.color;
+    out.albedo = state.color;
     out.distance = hit.distance;
-    out.surface = look.surface;
+    out.surface = state.surface;
     out.slope = pixel_size / facing;
     if (!is_one_of_few) return out;
     const double rise = 0.5 + 0.5 * dot(hit.normal, light_.up);
     const Vec3 sky = (1.0 - rise) * light_.sky_colors.below + rise * light_.sky_colors.zenith;
-    out.own = faded(hit.emission + times(out.albedo, look.sun), look.left);
-    out.plain = look.left * times(out.albedo, sky);
+    out.own = faded(hit.emission + times(out.albedo, state.sun), state.left);
+    out.plain = state.left * times(out.albedo, sky);
     return out;
 }
 
@@ -152,7 +152,7 @@ void Painter::quick_pixels(std::span<const PixelPosition> pixel_positions, std::
                            std::span<const SphereFind> finds, const SunShadows* shadows) const {
     std::array<PreviewRay, kPacketRays> room;
     std::array<std::optional<PreviewHit>, kPacketRays> hits;
-    std::array<SunAsk, kPacketRays> asks;
+    std::array<SunQuery, kPacketRays> queries;
     const std::span rays(room.data(), pixel_positions.size());
     for (std::size_t k = 0; k < pixel_positions.size(); ++k) {
         rays[k] = camera_ray(pixel_positions[k].x + 0.5, pixel_positions[k].y + 0.5, {});
@@ -160,16 +160,16 @@ void Painter::quick_pixels(std::span<const PixelPosition> pixel_positions, std::
     }
     trace_besides(rays, std::span(hits.data(), pixel_positions.size()), finds);
     for (std::size_t k = 0; k < pixel_positions.size(); ++k) {
-        asks[k].hit = hits[k] ? &*hits[k] : nullptr;
-        asks[k].to_sun = sun_middle_;
+        queries[k].hit = hits[k] ? &*hits[k] : nullptr;
+        queries[k].to_sun = sun_middle_;
     }
-    ask_sun(std::span(asks.data(), pixel_positions.size()), shadows);
+    query_sun(std::span(queries.data(), pixel_positions.size()), shadows);
     for (std::size_t k = 0; k < pixel_positions.size(); ++k) {
-        const PreviewHit* const hit = asks[k].hit;
+        const PreviewHit* const hit = queries[k].hit;
         const bool open = options_.transparent && hit == nullptr;
         const Vec3 behind = open             ? Vec3{}
                             : hit == nullptr ? behind_everything(rays[k].direction)
-                                             : quick_light(*hit, asks[k].light);
+                                             : quick_light(*hit, queries[k].light);
         const Seen shown = through_glass(rays[k], hit == nullptr ? kNothing : hit->distance, behind);
         out[k].light = tone_mapped(options_.exposure * shown.light);
         out[k].alpha = open ? shown.cover : 1.0;
@@ -184,7 +184,7 @@ void Painter::trace_besides(std::span<PreviewRay> rays, std::span<std::optional<
         return;
     }
     for (std::size_t k = 0; k < rays.size(); ++k) rays[k].reach = finds[k].distance;
-    preview_.trace(rays, hits, SphereRays::left_out);
+    preview_.trace(rays, hits, SphereRays::skipped);
     for (std::size_t k = 0; k < rays.size(); ++k) {
         rays[k].reach = kNothing;
         const double distance = hits[k] ? hits[k]->distance : kNothing;
@@ -214,22 +214,22 @@ Vec3 Painter::behind_everything(const Vec3& direction) const {
     return options_.background ? *options_.background : light_.backdrop(direction);
 }
 
-void Painter::trace(std::span<Look> looks, const KnownSpheres& known, Hits& hits) const {
+void Painter::trace(std::span<SampleState> states, const KnownSpheres& known, Hits& hits) const {
     std::array<PreviewRay, kPacketRays> rays;
     std::array<SphereFind, kPacketRays> finds;
-    for (std::size_t k = 0; k < looks.size(); ++k) rays[k] = looks[k].ray;
-    const std::span asked(rays.data(), looks.size());
-    const std::span found(finds.data(), known.listed ? looks.size() : 0);
+    for (std::size_t k = 0; k < states.size(); ++k) rays[k] = states[k].ray;
+    const std::span asked(rays.data(), states.size());
+    const std::span found(finds.data(), known.listed ? states.size() : 0);
     if (known.listed) meet_spheres(*known.listed, asked, found);
-    trace_besides(asked, std::span(hits.data(), looks.size()), found);
-    for (std::size_t k = 0; k < looks.size(); ++k) {
-        looks[k].surface = 0;
-        looks[k].hit = hits[k] ? &*hits[k] : nullptr;
+    trace_besides(asked, std::span(hits.data(), states.size()), found);
+    for (std::size_t k = 0; k < states.size(); ++k) {
+        states[k].surface = 0;
+        states[k].hit = hits[k] ? &*hits[k] : nullptr;
         if (!hits[k]) continue;
         const bool is_known = known.listed && finds[k].distance == hits[k]->distance;
-        looks[k].surface = is_known ? finds[k].sphere + 1 : 0;
-        looks[k].color = surface_color(*hits[k]);
-        looks[k].left = hits[k]->kind == PreviewHit::Kind::plane ? nearness(*hits[k]) : 1.0;
+        states[k].surface = is_known ? finds[k].sphere + 1 : 0;
+        states[k].color = surface_color(*hits[k]);
+        states[k].left = hits[k]->kind == PreviewHit::Kind::plane ? nearness(*hits[k]) : 1.0;
     }
 }
 

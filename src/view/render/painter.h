@@ -64,12 +64,12 @@ private:
     };
     using Hits = std::array<std::optional<PreviewHit>, kPacketRays>;
     // State of one sample of a pixel.
-    struct Look {
+    struct SampleState {
         PreviewRay ray;
         const PixelSamples* samples = nullptr;
         int sample = 0;
         const PreviewHit* hit = nullptr;
-        std::uint32_t surface = 0;  // see Glance::surface
+        std::uint32_t surface = 0;  // see CameraRayResult::surface
         Vec3 color;                 // colour of the surface at the hit
         // Share of the surface's light in the result; the rest is the background at the horizon.
         double left = 1.0;
@@ -78,30 +78,30 @@ private:
         [[nodiscard]] SamplePair get(SamplePurpose purpose) const { return samples->get(sample, purpose); }
     };
     // Query for the sun's light at a point of a surface.
-    struct SunAsk {
+    struct SunQuery {
         const PreviewHit* hit = nullptr;
         Vec3 to_sun{};
         Vec3 light{};  // result
     };
 
     [[nodiscard]] PreviewRay camera_ray(double x, double y, const SamplePair& lens) const;
-    void trace(std::span<Look> looks, const KnownSpheres& known, Hits& hits) const;
-    void aim(Look& look, const PixelPosition& pixel_position, int sample) const;
-    void add(const Look& look, PixelSum& sum) const;
-    void add_glances(std::span<const PixelPosition> pixel_positions, std::span<Look> looks, std::span<PixelSum> sums,
-                     const KnownSpheres& known) const;
+    void trace(std::span<SampleState> states, const KnownSpheres& known, Hits& hits) const;
+    void aim(SampleState& state, const PixelPosition& pixel_position, int sample) const;
+    void add(const SampleState& state, PixelSum& sum) const;
+    void add_extra_rays(std::span<const PixelPosition> pixel_positions, std::span<SampleState> states,
+                        std::span<PixelSum> sums, const KnownSpheres& known) const;
     [[nodiscard]] std::array<int, kPacketRays> rays_wanted(std::span<const PixelPosition> pixel_positions,
                                                            std::span<const PixelSum> sums,
                                                            const KnownSpheres& known) const;
-    [[nodiscard]] Glance glance(const Look& look) const;
-    void add_sun_light(std::span<Look> looks, const SunShadows* shadows) const;
-    void add_sky_light(std::span<Look> looks, const SunShadows* shadows) const;
+    [[nodiscard]] CameraRayResult camera_ray_result(const SampleState& state) const;
+    void add_sun_light(std::span<SampleState> states, const SunShadows* shadows) const;
+    void add_sky_light(std::span<SampleState> states, const SunShadows* shadows) const;
     [[nodiscard]] Seen through_glass(PreviewRay ray, double distance, const Vec3& behind) const;
-    [[nodiscard]] Vec3 solid_light(const Look& look) const;
+    [[nodiscard]] Vec3 solid_light(const SampleState& state) const;
     [[nodiscard]] Vec3 quick_light(const PreviewHit& hit, const Vec3& sun) const;
     void trace_besides(std::span<PreviewRay> rays, std::span<std::optional<PreviewHit>> hits,
                        std::span<const SphereFind> finds) const;
-    void ask_sun(std::span<SunAsk> asks, const SunShadows* shadows = nullptr) const;
+    void query_sun(std::span<SunQuery> queries, const SunShadows* shadows = nullptr) const;
     [[nodiscard]] PreviewHit sphere_hit(const SphereFind& find, const PreviewRay& ray) const;
     [[nodiscard]] bool faces_sun(const PreviewHit& hit) const;
     [[nodiscard]] Vec3 sun_light(const PreviewHit& hit, const Vec3& to_sun) const;

@@ -51,13 +51,13 @@ Painter::Seen Painter::through_glass(PreviewRay ray, double distance, const Vec3
     return {light + open * behind, 1.0 - open};
 }
 
-Vec3 Painter::solid_light(const Look& look) const {
-    if (!look.hit) return behind_everything(look.ray.direction);
-    const PreviewHit& hit = *look.hit;
-    Vec3 light = hit.emission + times(look.color, look.sun + look.sky);
-    if (!lamps_.empty()) light += times(look.color, lamp_light(hit, look.get(SamplePurpose::lamp)));
-    if (hit.roughness < 1.0) light += gloss(hit, look.ray, look.sun != Vec3{});
-    return faded(light, look.left);
+Vec3 Painter::solid_light(const SampleState& state) const {
+    if (!state.hit) return behind_everything(state.ray.direction);
+    const PreviewHit& hit = *state.hit;
+    Vec3 light = hit.emission + times(state.color, state.sun + state.sky);
+    if (!lamps_.empty()) light += times(state.color, lamp_light(hit, state.get(SamplePurpose::lamp)));
+    if (hit.roughness < 1.0) light += gloss(hit, state.ray, state.sun != Vec3{});
+    return faded(light, state.left);
 }
 
 // Returns the light of a surface for a draft. `sun` is the sun's light on the surface. No rays are traced.
@@ -69,33 +69,33 @@ Vec3 Painter::quick_light(const PreviewHit& hit, const Vec3& sun) const {
 }
 
 // Computes the sun's light on surfaces, with shadows. Queries without a hit are skipped.
-void Painter::ask_sun(std::span<SunAsk> asks, const SunShadows* shadows) const {
+void Painter::query_sun(std::span<SunQuery> queries, const SunShadows* shadows) const {
     if (!light_.has_sun()) return;
     std::array<PreviewRay, kPacketRays> rays;
     std::array<std::size_t, kPacketRays> whose{};
     std::size_t count = 0;
-    for (std::size_t k = 0; k < asks.size(); ++k) {
-        if (asks[k].hit == nullptr) continue;
-        const PreviewHit& hit = *asks[k].hit;
-        const double cosine = dot(hit.normal, asks[k].to_sun);
+    for (std::size_t k = 0; k < queries.size(); ++k) {
+        if (queries[k].hit == nullptr) continue;
+        const PreviewHit& hit = *queries[k].hit;
+        const double cosine = dot(hit.normal, queries[k].to_sun);
         if (cosine <= 0.0) continue;
         const Vec3 start = off_surface(hit) + hit.lift;
-        if (shadows != nullptr && shadows->covers(start, asks[k].to_sun)) continue;
-        asks[k].light = cosine * light_.sun;
-        rays[count] = {start, asks[k].to_sun, hit.time};
+        if (shadows != nullptr && shadows->is_shadowed(start, queries[k].to_sun)) continue;
+        queries[k].light = cosine * light_.sun;
+        rays[count] = {start, queries[k].to_sun, hit.time};
         whose[count++] = k;
     }
-    const SphereRays by_rays = shadows == nullptr ? SphereRays::met : SphereRays::left_out;
+    const SphereRays by_rays = shadows == nullptr ? SphereRays::traced : SphereRays::skipped;
     const std::array<bool, kPacketRays> dark = preview_.occluded(std::span(rays.data(), count), by_rays);
     for (std::size_t j = 0; j < count; ++j) {
-        if (dark[j]) asks[whose[j]].light = {};
+        if (dark[j]) queries[whose[j]].light = {};
     }
 }
 
 Vec3 Painter::sun_light(const PreviewHit& hit, const Vec3& to_sun) const {
-    SunAsk ask{&hit, to_sun};
-    ask_sun(std::span(&ask, 1));
-    return ask.light;
+    SunQuery query{&hit, to_sun};
+    query_sun(std::span(&query, 1));
+    return query.light;
 }
 
 // Returns true if any part of the sun is on the visible side of the surface.
@@ -103,50 +103,52 @@ bool Painter::faces_sun(const PreviewHit& hit) const {
     return light_.has_sun() && dot(hit.normal, sun_middle_) > -light_.sun_size;
 }
 
-void Painter::add_sun_light(std::span<Look> looks, const SunShadows* shadows) const {
+void Painter::add_sun_light(std::span<SampleState> states, const SunShadows* shadows) const {
     if (!light_.has_sun()) return;
-    std::array<SunAsk, kPacketRays> asks;
-    for (std::size_t k = 0; k < looks.size(); ++k) {
-        asks[k] = {};
-        if (!looks[k].hit || !faces_sun(*looks[k].hit)) continue;
-        const SamplePair at = looks[k].get(SamplePurpose::sun);
-        asks[k] = {looks[k].hit, sun_.direction(at.u, at.v)};
+    std::array<SunQuery, kPacketRays> queries;
+    for (std::size_t k = 0; k < states.size(); ++k) {
+        queries[k] = {};
+        if (!states[k].hit || !faces_sun(*states[k].hit)) continue;
+        const SamplePair at = states[k].get(SamplePurpose::sun);
+        queries[k] = {states[k].hit, sun_.direction(at.u, at.v)};
     }
-    ask_sun(std::span(asks.data(), looks.size()), shadows);
-    for (std::size_t k = 0; k < looks.size(); ++k) looks[k].sun = asks[k].light;
+    query_sun(std::span(queries.data(), states.size()), shadows);
+    for (std::size_t k = 0; k < states.size(); ++k) states[k].sun = queries[k].light;
 }
 
 // Adds the sky's light from one sampled direction. If a surface occludes the sky in this direction, the light of this
 // surface is added instead.
-void Painter::add_sky_light(std::span<Look> looks, const SunShadows* shadows) const {
+void Painter::add_sky_light(std::span<SampleState> states, const SunShadows* shadows) const {
     std::array<std::optional<PreviewHit>, kPacketRays> others;
     std::array<PreviewRay, kPacketRays> rays;
-    std::array<Look*, kPacketRays> whose;
-    std::array<SunAsk, kPacketRays> asks;
+    std::array<SampleState*, kPacketRays> whose;
+    std::array<SunQuery, kPacketRays> queries;
     std::size_t count = 0;
-    for (Look& look : looks) {
-        if (!look.hit) continue;
-        const SamplePair at = look.get(SamplePurpose::sky);
-        rays[count] = {off_surface(*look.hit) + look.hit->lift, cosine_direction(look.hit->normal, at.u, at.v),
-                       look.hit->time};
-        whose[count++] = &look;
+    for (SampleState& state : states) {
+        if (!state.hit) continue;
+        const SamplePair at = state.get(SamplePurpose::sky);
+        rays[count] = {off_surface(*state.hit) + state.hit->lift, cosine_direction(state.hit->normal, at.u, at.v),
+                       state.hit->time};
+        whose[count++] = &state;
     }
     // Glowing lines are excluded, because lamps already represent their light.
-    preview_.trace(std::span(rays.data(), count), std::span(others.data(), count), SphereRays::met, GlowRays::left_out);
+    preview_.trace(std::span(rays.data(), count), std::span(others.data(), count), SphereRays::traced,
+                   GlowRays::skipped);
     for (std::size_t k = 0; k < count; ++k) {
-        asks[k] = {};
+        queries[k] = {};
         if (!others[k]) {
             whose[k]->sky = light_.sky(rays[k].direction);
         } else if (faces_sun(*others[k])) {
             const SamplePair sun_at = whose[k]->get(SamplePurpose::far_sun);
-            asks[k] = {&*others[k], sun_.direction(sun_at.u, sun_at.v)};
+            queries[k] = {&*others[k], sun_.direction(sun_at.u, sun_at.v)};
         }
     }
-    ask_sun(std::span(asks.data(), count), shadows);
+    query_sun(std::span(queries.data(), count), shadows);
     constexpr Vec3 kFarSky{0.22, 0.25, 0.30};  // assumed light on the other surface, without sunlight
     for (std::size_t k = 0; k < count; ++k) {
         if (!others[k]) continue;
-        whose[k]->sky = others[k]->emission + times(others[k]->color, asks[k].light + light_.sky_brightness * kFarSky);
+        whose[k]->sky =
+            others[k]->emission + times(others[k]->color, queries[k].light + light_.sky_brightness * kFarSky);
     }
 }
 

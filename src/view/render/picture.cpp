@@ -116,7 +116,7 @@ public:
         pays_ = view_.pays() && !view_.empty();
         const auto sun = painter.sun_middle();
         if (sun && pays_) shadows_.emplace(preview.spheres(), *sun);
-        if (shadows_ && !shadows_->pays()) shadows_.reset();
+        if (shadows_ && !shadows_->is_faster_than_rays()) shadows_.reset();
         if (!pays_ || (sun && !shadows_)) preview.prepare_sphere_rays();
     }
 
@@ -163,7 +163,7 @@ public:
         if (preview.spheres().centers.size() > kMostSpheres || painter.sun_slope() > kWidestSun) return;
         if (const auto sun = painter.sun_middle()) {
             shadows_.emplace(preview.spheres(), *sun);
-            if (!shadows_->pays(painter.sun_slope())) shadows_.reset();
+            if (!shadows_->is_faster_than_rays(painter.sun_slope())) shadows_.reset();
         }
     }
 

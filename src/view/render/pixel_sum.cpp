@@ -22,39 +22,40 @@ double part(double some, double all) { return all > 0.0 ? std::max(0.0, some) / 
 
 }  // namespace
 
-void PixelSum::add(const Glance& glance, const Vec3& light, const Vec3& shown, double cover) {
-    if (samples_ < kGlances) {
-        kept_[static_cast<std::size_t>(samples_)] = {glance.own, glance.plain, shown};
-        light_ += light - glance.own;
-        plain_ += glance.plain;
+void PixelSum::add(const CameraRayResult& result, const Vec3& light, const Vec3& shown, double cover) {
+    if (samples_ < kMostPixelRays) {
+        kept_[static_cast<std::size_t>(samples_)] = {result.own, result.plain, shown};
+        light_ += light - result.own;
+        plain_ += result.plain;
     }
-    if (samples_ == 0) surface_ = glance.surface;
-    surfaces_differ_ = surfaces_differ_ || glance.surface != surface_;
-    farthest_ = std::max(farthest_, glance.distance > 0.0 ? glance.distance : std::numeric_limits<double>::infinity());
+    if (samples_ == 0) surface_ = result.surface;
+    surfaces_differ_ = surfaces_differ_ || result.surface != surface_;
+    farthest_ = std::max(farthest_, result.distance > 0.0 ? result.distance : std::numeric_limits<double>::infinity());
     ++samples_;
     sum_.light += shown;
     const double bright = luminance(shown);
     sum_of_squares_ += bright * bright;
     cover_ += cover;
-    seen_by_samples_ += glance.covers ? 1.0 : 0.0;
-    add_features(glance);
+    seen_by_samples_ += result.covers ? 1.0 : 0.0;
+    add_features(result);
 }
 
-void PixelSum::add(const Glance& glance) {
-    kept_[static_cast<std::size_t>(rays_)] = {glance.own, glance.plain, {}};
-    add_features(glance);
+void PixelSum::add(const CameraRayResult& result) {
+    kept_[static_cast<std::size_t>(rays_)] = {result.own, result.plain, {}};
+    add_features(result);
 }
 
-void PixelSum::add_features(const Glance& glance) {
+void PixelSum::add_features(const CameraRayResult& result) {
     ++rays_;
-    sum_.normal += glance.normal;
-    sum_.albedo += glance.albedo;
-    sum_.distance += glance.distance;
-    sum_.slope += glance.slope;
-    seen_ += glance.covers ? 1.0 : 0.0;
+    sum_.normal += result.normal;
+    sum_.albedo += result.albedo;
+    sum_.distance += result.distance;
+    sum_.slope += result.slope;
+    seen_ += result.covers ? 1.0 : 0.0;
 }
 
-// Returns, for each channel, the samples' light other than Glance::own, divided by their Glance::plain.
+// Returns, for each channel, the samples' light other than CameraRayResult::own, divided by their
+// CameraRayResult::plain.
 Vec3 PixelSum::lit() const { return {part(light_.x, plain_.x), part(light_.y, plain_.y), part(light_.z, plain_.z)}; }
 
 // Returns the expected light of a sample, in which the ratio `lit` of the pixel replaces the sample's own occlusion.
@@ -76,8 +77,8 @@ double PixelSum::contrast() const {
 }
 
 int PixelSum::rays_wanted(bool has_outline) const {
-    if (samples_ >= kGlances) return 0;
-    const int most = kGlances - samples_;
+    if (samples_ >= kMostPixelRays) return 0;
+    const int most = kMostPixelRays - samples_;
     const double differences = contrast();
     const bool is_even = differences < kEven;
     if (has_outline && surfaces_differ_) return is_even ? 0 : most;

@@ -27,10 +27,10 @@ struct PixelLight {
 
 /// Largest number of samples and extra rays of a pixel together. If there are already as many samples, no extra rays
 /// are traced.
-inline constexpr int kGlances = 16;
+inline constexpr int kMostPixelRays = 16;
 
 /// Result of a camera ray, without the light of the sky. The defaults describe a ray without a hit.
-struct Glance {
+struct CameraRayResult {
     Vec3 own;    ///< the surface's emission and its reflected sunlight; the background's light if nothing is hit
     Vec3 plain;  ///< the sky's light that the surface reflects if nothing occludes the sky
     Vec3 normal;
@@ -48,16 +48,17 @@ public:
     explicit PixelSum(double exposure = 1.0) : exposure_(exposure) {}
     /// Adds a sample. `light` is the light of the surface or the background. `shown` is the sample's light after glass
     /// and tone mapping. `cover` is the share of the ray that objects cover, 0..1.
-    void add(const Glance& glance, const Vec3& light, const Vec3& shown, double cover);
-    /// Returns the number of extra rays that the pixel needs, at most kGlances together with the samples. `has_outline`
-    /// is true if the outline of a known sphere can cross the pixel. The number increases with the differences between
-    /// the samples. It is the maximum if the pixel has an outline, and samples hit different surfaces and differ in
-    /// light. It is 0 after kGlances samples.
+    void add(const CameraRayResult& result, const Vec3& light, const Vec3& shown, double cover);
+    /// Returns the number of extra rays that the pixel needs, at most kMostPixelRays together with the samples.
+    /// `has_outline` is true if the outline of a known sphere can cross the pixel. The number increases with the
+    /// differences between the samples. It is the maximum if the pixel has an outline, and samples hit different
+    /// surfaces and differ in light. It is 0 after kMostPixelRays samples.
     [[nodiscard]] int rays_wanted(bool has_outline = false) const;
     /// Returns the distance of the farthest surface that a sample hit, in m. Returns infinity if a sample had no hit.
     [[nodiscard]] double farthest() const { return farthest_; }
-    /// Adds an extra camera ray. The caller adds all samples first, and at most kGlances samples and rays together.
-    void add(const Glance& glance);
+    /// Adds an extra camera ray. The caller adds all samples first, and at most kMostPixelRays samples and rays
+    /// together.
+    void add(const CameraRayResult& result);
     /// Returns the mean of the samples and the extra rays. At least one sample is required.
     [[nodiscard]] PixelLight mean() const;
 
@@ -65,7 +66,7 @@ private:
     struct Sample {
         Vec3 own, plain, shown;
     };
-    void add_features(const Glance& glance);
+    void add_features(const CameraRayResult& result);
     [[nodiscard]] double contrast() const;
     [[nodiscard]] Vec3 lit() const;
     [[nodiscard]] Vec3 expected(const Sample& sample, const Vec3& lit) const;
@@ -74,7 +75,7 @@ private:
     double exposure_;
     PixelLight sum_{{}, 0.0, 0.0, {}, {}, 0.0, 0.0};
     double sum_of_squares_ = 0.0;  // sum of the squared luminance of the samples
-    Vec3 light_, plain_;           // sums of all light except Glance::own, and of Glance::plain
+    Vec3 light_, plain_;           // sums of all light except CameraRayResult::own, and of CameraRayResult::plain
     double cover_ = 0.0;           // sum over the samples
     double seen_ = 0.0;
     double seen_by_samples_ = 0.0;
@@ -83,7 +84,7 @@ private:
     bool surfaces_differ_ = false;
     int samples_ = 0;
     int rays_ = 0;
-    std::array<Sample, kGlances> kept_;
+    std::array<Sample, kMostPixelRays> kept_;
 };
 
 }  // namespace ricochet

@@ -83,7 +83,7 @@ Preview& Preview::operator=(Preview&&) noexcept = default;
 
 void Preview::Impl::take_spheres(PreviewSpheres&& source) {
     spheres = {};
-    sphere_ways.clear();
+    sphere_paths.clear();
     has_sphere_rays = false;
     const bool moves = !source.shutter_paths.empty();
     for (std::size_t i = 0; i < source.centers.size(); ++i) {
@@ -95,7 +95,7 @@ void Preview::Impl::take_spheres(PreviewSpheres&& source) {
         spheres.radii.push_back(source.radii[i]);
         spheres.colors.push_back(source.colors[i]);
         if (!source.emissions.empty()) spheres.emissions.push_back(source.emissions[i]);
-        if (moves) sphere_ways.push_back(std::move(source.shutter_paths[i]));
+        if (moves) sphere_paths.push_back(std::move(source.shutter_paths[i]));
     }
 }
 
@@ -105,7 +105,7 @@ void Preview::Impl::build_spheres() {
     sphere_scene = new_scene(device.get());
     RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT);
     const std::size_t count = spheres.centers.size();
-    const std::size_t steps = sphere_ways.empty() ? 1 : sphere_ways[0].size();
+    const std::size_t steps = sphere_paths.empty() ? 1 : sphere_paths[0].size();
     rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(steps));
     for (std::size_t step = 0; step < steps; ++step) {
         auto* buffer =
@@ -113,7 +113,7 @@ void Preview::Impl::build_spheres() {
                                                         RTC_FORMAT_FLOAT4, 4 * sizeof(float), count));
         embree::check_device(device.get(), "storing the particles for the picture");
         for (std::size_t i = 0; i < count; ++i) {
-            store(buffer + 4 * i, (sphere_ways.empty() ? spheres.centers[i] : sphere_ways[i][step]) - origin);
+            store(buffer + 4 * i, (sphere_paths.empty() ? spheres.centers[i] : sphere_paths[i][step]) - origin);
             buffer[4 * i + 3] = static_cast<float>(spheres.radii[i]);
         }
     }
@@ -199,7 +199,7 @@ void Preview::set_moving(PreviewMoving moving, SphereRays spheres) {
     impl_->moving_scene = new_scene(impl_->device.get());
     impl_->has_moving = false;
     impl_->take_spheres(std::move(moving.spheres));
-    if (spheres == SphereRays::met) impl_->build_spheres();
+    if (spheres == SphereRays::traced) impl_->build_spheres();
     impl_->add_lines(moving.lines);
     impl_->add_cloth(std::move(moving.cloth));
     impl_->add_copies(moving.copies);
@@ -218,6 +218,6 @@ const DrawnSpheres& Preview::spheres() const { return impl_->spheres; }
 
 const std::vector<GlowingLine>& Preview::glowing_lines() const { return impl_->glowing_lines; }
 
-bool Preview::spheres_move() const { return !impl_->sphere_ways.empty(); }
+bool Preview::spheres_move() const { return !impl_->sphere_paths.empty(); }
 
 }  // namespace ricochet

@@ -99,11 +99,11 @@ struct PreviewMoving {
 };
 
 /// Option to trace spheres. Callers that compute the visible spheres by other means leave spheres out.
-enum class SphereRays { met, left_out };
+enum class SphereRays { traced, skipped };
 
 /// Option to trace glowing lines. Rays that sample the light on a surface leave them out, because lamps represent their
 /// light.
-enum class GlowRays { met, left_out };
+enum class GlowRays { traced, skipped };
 
 /// Ray from a point along a unit vector.
 struct PreviewRay {
@@ -153,9 +153,9 @@ public:
     void set_shape(TriangleMesh shape) { set_shapes({std::move(shape)}); }
     /// Replaces all moving objects by spheres. Must not run while rays are traced.
     void set_spheres(const PreviewSpheres& spheres);
-    /// Replaces all moving objects. With `left_out`, rays ignore the spheres until prepare_sphere_rays() is called,
+    /// Replaces all moving objects. With `skipped`, rays ignore the spheres until prepare_sphere_rays() is called,
     /// which saves time for drafts. Must not run while rays are traced.
-    void set_moving(PreviewMoving moving, SphereRays spheres = SphereRays::met);
+    void set_moving(PreviewMoving moving, SphereRays spheres = SphereRays::traced);
     /// Builds the Embree scene of the spheres if it does not exist. Must not run while rays are traced.
     void prepare_sphere_rays() const;
 
@@ -165,14 +165,14 @@ public:
     /// from the result of a single ray, but the same packet always gives the same digits. `hits` has as many entries as
     /// `rays`.
     void trace(std::span<const PreviewRay> rays, std::span<std::optional<PreviewHit>> hits,
-               SphereRays spheres = SphereRays::met, GlowRays glow = GlowRays::met) const;
+               SphereRays spheres = SphereRays::traced, GlowRays glow = GlowRays::traced) const;
     /// Returns the first hit on a glass mesh. Safe from any thread.
     [[nodiscard]] std::optional<PreviewHit> trace_glass(const PreviewRay& ray) const;
     /// Returns true if a mesh or a moving object blocks the ray. Planes and glowing lines cast no shadows.
     [[nodiscard]] bool occluded(const PreviewRay& ray) const;
     /// Returns occluded() for each of up to kPacketRays rays, in the order of the rays.
     [[nodiscard]] std::array<bool, kPacketRays> occluded(std::span<const PreviewRay> rays,
-                                                         SphereRays spheres = SphereRays::met) const;
+                                                         SphereRays spheres = SphereRays::traced) const;
     [[nodiscard]] const DrawnSpheres& spheres() const;
     /// Returns the drawn glowing lines.
     [[nodiscard]] const std::vector<GlowingLine>& glowing_lines() const;

@@ -48,7 +48,7 @@ struct Preview::Impl {
     std::vector<PreviewPlane> planes;
     DrawnSpheres spheres;
     // Paths of the drawn spheres while the shutter is open; empty if no sphere moves.
-    std::vector<std::vector<Vec3>> sphere_ways;
+    std::vector<std::vector<Vec3>> sphere_paths;
     bool has_sphere_rays = false;
     LineGroup dark_lines, bright_lines;
     std::vector<GlowingLine> glowing_lines;  // one per glowing line, in the order of bright_lines

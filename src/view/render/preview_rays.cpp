@@ -173,7 +173,7 @@ bool Preview::Impl::is_traceable(const PreviewRay& ray) const {
     return drawable(ray.origin - origin) && drawable(ray.direction);
 }
 
-bool Preview::Impl::traces(SphereRays rays) const { return rays == SphereRays::met && has_sphere_rays; }
+bool Preview::Impl::traces(SphereRays rays) const { return rays == SphereRays::traced && has_sphere_rays; }
 
 void Preview::Impl::meet(const MeshGroup& group, RayFind& find) {
     if (group.empty()) return;
@@ -297,7 +297,7 @@ void Preview::trace(std::span<const PreviewRay> rays, std::span<std::optional<Pr
     }
     if (impl_->traces(spheres)) find.meet(impl_->sphere_scene.get(), nullptr, true);
     if (impl_->has_moving) find.meet(impl_->moving_scene.get(), nullptr, false);
-    if (glow == GlowRays::met && !impl_->glowing_lines.empty()) find.meet(impl_->glow_scene.get(), nullptr, false);
+    if (glow == GlowRays::traced && !impl_->glowing_lines.empty()) find.meet(impl_->glow_scene.get(), nullptr, false);
     for (std::size_t lane = 0; lane < rays.size(); ++lane) {
         hits[lane].reset();
         if (find.valid[lane] == 0) continue;
@@ -331,7 +331,7 @@ bool Preview::occluded(const PreviewRay& ray) const {
     for (const MeshGroup* group : {&impl_->solid, &impl_->moving_solid}) {
         if (shadow.tfar >= 0.0F && !group->empty()) occluded1(group->scene.get(), context, shadow);
     }
-    if (shadow.tfar >= 0.0F && impl_->traces(SphereRays::met)) {
+    if (shadow.tfar >= 0.0F && impl_->traces(SphereRays::traced)) {
         occluded1(impl_->sphere_scene.get(), context, shadow);
     }
     if (shadow.tfar >= 0.0F && impl_->has_moving) occluded1(impl_->moving_scene.get(), context, shadow);
@@ -340,7 +340,7 @@ bool Preview::occluded(const PreviewRay& ray) const {
 
 std::array<bool, kPacketRays> Preview::occluded(std::span<const PreviewRay> rays, SphereRays spheres) const {
     std::array<bool, kPacketRays> dark{};
-    if (rays.size() == 1 && spheres == SphereRays::met) {
+    if (rays.size() == 1 && spheres == SphereRays::traced) {
         dark[0] = occluded(rays[0]);
         return dark;
     }

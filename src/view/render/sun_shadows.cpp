@@ -135,19 +135,19 @@ void SunShadows::fill(const std::vector<Shade>& shades) {
     first_.assign(columns_ * rows_ + 1, 0);
     each_cell([this](std::size_t cell, const Shade&) { ++first_[cell + 1]; });
     for (std::size_t cell = 1; cell < first_.size(); ++cell) first_[cell] += first_[cell - 1];
-    over_.resize(first_.back());
+    cell_spheres_.resize(first_.back());
     std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    each_cell([&](std::size_t cell, const Shade& shade) { over_[next[cell]++] = shade; });
+    each_cell([&](std::size_t cell, const Shade& shade) { cell_spheres_[next[cell]++] = shade; });
     parallel_for_blocks(columns_ * rows_, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t cell = begin; cell < end; ++cell) {
-            std::sort(over_.begin() + static_cast<std::ptrdiff_t>(first_[cell]),
-                      over_.begin() + static_cast<std::ptrdiff_t>(first_[cell + 1]),
+            std::sort(cell_spheres_.begin() + static_cast<std::ptrdiff_t>(first_[cell]),
+                      cell_spheres_.begin() + static_cast<std::ptrdiff_t>(first_[cell + 1]),
                       [](const Shade& a, const Shade& b) { return a.height + a.radius > b.height + b.radius; });
         }
     });
 }
 
-bool SunShadows::covers(const Vec3& point) const {
+bool SunShadows::is_shadowed(const Vec3& point) const {
     const double u = dot(point, across_);
     const double v = dot(point, along_);
     const double column = (u - left_) * per_size_;
@@ -158,7 +158,7 @@ bool SunShadows::covers(const Vec3& point) const {
     const double height = dot(point, to_light_);
     const std::size_t cell = static_cast<std::size_t>(row) * columns_ + static_cast<std::size_t>(column);
     for (std::size_t k = first_[cell]; k < first_[cell + 1]; ++k) {
-        const Shade& shade = over_[k];
+        const Shade& shade = cell_spheres_[k];
         if (shade.height + shade.radius <= height) return false;
         const double du = u - shade.u;
         const double dv = v - shade.v;
@@ -169,34 +169,34 @@ bool SunShadows::covers(const Vec3& point) const {
 }
 
 // Returns the number of spheres in a cell, averaged over the entries of all cells.
-double SunShadows::crowd() const {
+double SunShadows::mean_occupancy() const {
     double sum = 0.0;
     for (std::size_t cell = 0; cell + 1 < first_.size(); ++cell) {
         const auto here = static_cast<double>(first_[cell + 1] - first_[cell]);
-        sum += here * here / static_cast<double>(over_.size());
+        sum += here * here / static_cast<double>(cell_spheres_.size());
     }
     return sum;
 }
 
 // Most queries end at one of the first spheres of their cell. This fails if distant outliers make the cells so large
 // that one cell contains most spheres.
-bool SunShadows::pays() const {
+bool SunShadows::is_faster_than_rays() const {
     constexpr double kMostCrowded = 2000.0;
-    return over_.empty() || crowd() < kMostCrowded;
+    return cell_spheres_.empty() || mean_occupancy() < kMostCrowded;
 }
 
 // The cost of a query is the number of spheres in the cells that the ray crosses.
-bool SunShadows::pays(double slope) const {
+bool SunShadows::is_faster_than_rays(double slope) const {
     constexpr double kMostLooks = 150.0;
-    if (over_.empty()) return true;
-    return crowd() * (1.0 + slope * (top_ - bottom_) * per_size_) < kMostLooks;
+    if (cell_spheres_.empty()) return true;
+    return mean_occupancy() * (1.0 + slope * (top_ - bottom_) * per_size_) < kMostLooks;
 }
 
 // Returns true if a sphere of the cell blocks the ray. Only spheres that overlap the interval [low, high] of heights
 // above the ray's start are tested.
-bool SunShadows::covers_within(std::size_t cell, const Slanted& ray, double low, double high) const {
+bool SunShadows::is_shadowed_within(std::size_t cell, const Slanted& ray, double low, double high) const {
     for (std::size_t k = first_[cell]; k < first_[cell + 1]; ++k) {
-        const Shade& shade = over_[k];
+        const Shade& shade = cell_spheres_[k];
         const double up = shade.height - ray.from.height;
         if (up + shade.radius <= low) return false;
         if (up - shade.radius >= high) continue;
@@ -210,9 +210,9 @@ bool SunShadows::covers_within(std::size_t cell, const Slanted& ray, double low,
 }
 
 // Visits the cells in the order in which the ray crosses them.
-bool SunShadows::covers(const Vec3& point, const Vec3& direction) const {
-    if (direction == to_light_) return covers(point);
-    if (over_.empty()) return false;
+bool SunShadows::is_shadowed(const Vec3& point, const Vec3& direction) const {
+    if (direction == to_light_) return is_shadowed(point);
+    if (cell_spheres_.empty()) return false;
     const Slanted ray{shade_of(point, 0.0), dot(direction, across_), dot(direction, along_), dot(direction, to_light_)};
     GridWalk u((ray.from.u - left_) * per_size_, ray.across / ray.rise, per_size_, columns_);
     GridWalk v((ray.from.v - low_) * per_size_, ray.along / ray.rise, per_size_, rows_);
@@ -223,7 +223,7 @@ bool SunShadows::covers(const Vec3& point, const Vec3& direction) const {
     v.start(height);
     for (;;) {
         const double next = std::min({u.next, v.next, end});
-        if (covers_within(v.cell * columns_ + u.cell, ray, height, next)) return true;
+        if (is_shadowed_within(v.cell * columns_ + u.cell, ray, height, next)) return true;
         if (next >= end) return false;
         if (!(u.next <= v.next ? u : v).step()) return false;
         height = next;

@@ -21,15 +21,15 @@ public:
     SunShadows(const DrawnSpheres& spheres, const Vec3& to_light);
 
     /// Returns true if a sphere blocks the ray from a point to the light.
-    [[nodiscard]] bool covers(const Vec3& point) const;
+    [[nodiscard]] bool is_shadowed(const Vec3& point) const;
     /// Returns true if a sphere blocks the ray along `direction`. This unit vector must be at an angle of less than 90
     /// degrees to the light.
-    [[nodiscard]] bool covers(const Vec3& point, const Vec3& direction) const;
-    /// Returns true if covers(point) is faster than ray tracing.
-    [[nodiscard]] bool pays() const;
-    /// Returns true if covers(point, direction) is faster than ray tracing. `slope` is the largest tangent of the angle
-    /// between `direction` and the light.
-    [[nodiscard]] bool pays(double slope) const;
+    [[nodiscard]] bool is_shadowed(const Vec3& point, const Vec3& direction) const;
+    /// Returns true if is_shadowed(point) is faster than ray tracing.
+    [[nodiscard]] bool is_faster_than_rays() const;
+    /// Returns true if is_shadowed(point, direction) is faster than ray tracing. `slope` is the largest tangent of the
+    /// angle between `direction` and the light.
+    [[nodiscard]] bool is_faster_than_rays(double slope) const;
 
 private:
     // Sphere. u and v are coordinates perpendicular to the light, and `height` is the coordinate towards it.
@@ -48,19 +48,19 @@ private:
 
     void choose_grid(const std::vector<Shade>& shades);
     void fill(const std::vector<Shade>& shades);
-    [[nodiscard]] double crowd() const;
+    [[nodiscard]] double mean_occupancy() const;
     [[nodiscard]] double entries(const std::vector<Shade>& shades, double size) const;
     [[nodiscard]] Shade shade_of(const Vec3& center, double radius) const;
     [[nodiscard]] Cells cells_of(const Shade& shade) const;
-    [[nodiscard]] bool covers_within(std::size_t cell, const Slanted& ray, double low, double high) const;
+    [[nodiscard]] bool is_shadowed_within(std::size_t cell, const Slanted& ray, double low, double high) const;
 
     Vec3 across_, along_, to_light_;
     double left_ = 0.0, low_ = 0.0;  // corner of the grid, in m
     double per_size_ = 1.0;          // inverse edge length of a cell, in 1/m
     std::size_t columns_ = 0, rows_ = 0;
-    // Index of each cell's first entry in over_, and the size of over_ as an additional last entry.
+    // Index of each cell's first entry in cell_spheres_, and the size of cell_spheres_ as an additional last entry.
     std::vector<std::size_t> first_;
-    std::vector<Shade> over_;          // spheres of each cell, sorted by their highest point, highest first
+    std::vector<Shade> cell_spheres_;  // spheres of each cell, sorted by their highest point, highest first
     double bottom_ = 0.0, top_ = 0.0;  // lowest and highest point of all spheres, in m
 };
 

@@ -28,7 +28,7 @@ Turn random_turn(std::uint64_t id) {
     return {b * std::cos(two), {a * std::sin(one), a * std::cos(one), b * std::sin(two)}};
 }
 
-Turn turned_on(const Turn& turn, const Vec3& spin, double seconds) {
+Turn rotation_after(const Turn& turn, const Vec3& spin, double seconds) {
     const double rate = length(spin);
     const double half = 0.5 * rate * seconds;
     if (!(rate > 0.0) || !std::isfinite(half)) return turn;
@@ -46,9 +46,9 @@ AffineMap map_of(const Turn& turn) {
     return map;
 }
 
-OwnTurning own_turning(std::uint64_t id) {
+ParticleTurning particle_turning(std::uint64_t id) {
     RandomSequence draws(kSeed, kAxisStream, id);
-    OwnTurning own;
+    ParticleTurning own;
     own.axis = draws.unit_vector();
     own.angle = 2.0 * std::numbers::pi * draws.uniform();
     own.spread = draws.uniform_around(0.0, 1.0);

@@ -20,17 +20,17 @@ struct Turn {
 /// Method: K. Shoemake, "Uniform Random Rotations", Graphics Gems III, 1992.
 [[nodiscard]] Turn random_turn(std::uint64_t id);
 /// Returns the rotation after some seconds at a constant spin, in rad/s.
-[[nodiscard]] Turn turned_on(const Turn& turn, const Vec3& spin, double seconds);
+[[nodiscard]] Turn rotation_after(const Turn& turn, const Vec3& spin, double seconds);
 /// Returns a rotation as a map without translation.
 [[nodiscard]] AffineMap map_of(const Turn& turn);
 
 /// Random parameters of one particle, determined by its id like random_turn().
-struct OwnTurning {
+struct ParticleTurning {
     Vec3 axis;            ///< of unit length
     double angle = 0.0;   ///< radians, in [0, 2 pi)
     double spread = 0.0;  ///< random number in [-1, 1)
 };
-[[nodiscard]] OwnTurning own_turning(std::uint64_t id);
+[[nodiscard]] ParticleTurning particle_turning(std::uint64_t id);
 
 /// Returns a map that multiplies lengths along a unit direction by a factor > 0. It divides lengths perpendicular to
 /// the direction by the square root of the factor, so that the volume stays constant.

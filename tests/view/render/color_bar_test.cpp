@@ -22,7 +22,7 @@ TEST(ColorBar, ShowsItsMapFromTheLowestToTheHighestColor) {
     Image image = grey(640, 360);
     const std::vector<ColorBar> bars = {{"speed", "m/s", {0.0, 12.5}, ColorMap::plasma}};
     draw_color_bars(image, bars);
-    const BarPosition bar_position = bar_places(640, 360, bars)[0];
+    const BarPosition bar_position = compute_bar_positions(640, 360, bars)[0];
     const auto near = [](const std::array<int, 3>& pixel, std::array<int, 3> expected) {
         for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(pixel[c], expected[c], 1);
     };
@@ -35,7 +35,7 @@ TEST(ColorBar, ShowsItsMapFromTheLowestToTheHighestColor) {
 TEST(ColorBar, BarsStandInsideThePictureBesideEachOther) {
     for (const auto& [width, height] : {std::pair{640, 360}, {1280, 720}, {1920, 1080}, {480, 480}}) {
         const std::vector<BarPosition> bar_positions =
-            bar_places(width, height, {{"speed", "m/s", {}}, {"hits", "", {}}});
+            compute_bar_positions(width, height, {{"speed", "m/s", {}}, {"hits", "", {}}});
         const BarPosition& first = bar_positions[0];
         const BarPosition& second = bar_positions[1];
         EXPECT_GT(second.x, first.x + first.width);
@@ -49,7 +49,7 @@ TEST(ColorBar, ShowsTheWholeLabel) {
     const std::string name = "a_very_long_name_of_an_attribute_that_somebody_has_thought_of";
     for (const auto& [width, height] : {std::pair{640, 360}, {1280, 720}, {200, 400}, {1000, 120}}) {
         const std::vector<ColorBar> bars = {{name, "m/s", {0.0, 1.0}}, {name, "K", {0.0, 1.0}}};
-        const std::vector<BarPosition> bar_positions = bar_places(width, height, bars);
+        const std::vector<BarPosition> bar_positions = compute_bar_positions(width, height, bars);
         for (const BarPosition& bar_position : bar_positions) {
             EXPECT_GE(bar_position.x, 0);
             EXPECT_LE(bar_position.x + bar_position.width, width);
@@ -67,7 +67,7 @@ TEST(ColorBar, ShowsTheWholeLabel) {
     Image image = grey(960, 540);
     const std::vector<ColorBar> bars = {{"unsimulated_time_of_all", "s", {0.0, 1.0}}};
     draw_color_bars(image, bars);
-    const BarPosition bar_position = bar_places(960, 540, bars)[0];
+    const BarPosition bar_position = compute_bar_positions(960, 540, bars)[0];
     EXPECT_GE(bar_position.width, text_width("unsimulated_time_of_all (s)"));
     bool is_lit = false;
     for (int y = bar_position.y - kLetterHeight - 3; y < bar_position.y; ++y) {
@@ -92,9 +92,9 @@ TEST(ColorBar, ANoteStandsBelowTheNumbers) {
     std::vector<ColorBar> noted = plain;
     noted[0].note = "impacts only";
     const int line = kLetterHeight + 3;
-    EXPECT_EQ(bar_places(960, 540, noted)[0].y, bar_places(960, 540, plain)[0].y - line);
+    EXPECT_EQ(compute_bar_positions(960, 540, noted)[0].y, compute_bar_positions(960, 540, plain)[0].y - line);
     draw_color_bars(image, noted);
-    const BarPosition bar_position = bar_places(960, 540, noted)[0];
+    const BarPosition bar_position = compute_bar_positions(960, 540, noted)[0];
     bool is_lit = false;
     for (int y = bar_position.y + bar_position.height + 3 + line;
          y < bar_position.y + bar_position.height + 3 + 2 * line; ++y) {

@@ -178,7 +178,7 @@ TEST(Painter, PictureDoesNotDependOnTheMethodThatFindsSpheres) {
     preview.set_spheres(spheres_about());
     PictureOptions options;
     options.width = options.height = kSize;
-    options.samples = kGlances;
+    options.samples = kMostPixelRays;
     const Camera camera{{5, -6, 4}, {0, 0, 0}, {0, 0, 1}, 45.0};
     const Painter painter(preview, camera, options);
     const SphereView view(preview.spheres(), camera, kSize, kSize, WithinPixel::anywhere);

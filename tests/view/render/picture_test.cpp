@@ -189,7 +189,7 @@ Image draft_of_many(bool has_stray) {
     spheres.radii.push_back(0.05);
     spheres.colors.push_back({});
     Preview preview({}, {{{0, 0, 0}, {0, 0, 1}, {0.4, 0.4, 0.4}}}, {});
-    preview.set_moving({spheres, {}, {}}, SphereRays::left_out);
+    preview.set_moving({spheres, {}, {}}, SphereRays::skipped);
     PictureOptions options = small_picture();
     options.quick = true;
     return render_picture(preview, front_camera(), options);

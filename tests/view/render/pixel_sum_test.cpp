@@ -10,22 +10,22 @@ namespace RICOCHET_FILE {
 constexpr Vec3 kBright{0.8, 0.8, 0.8};
 constexpr Vec3 kDark{0.1, 0.1, 0.1};
 
-Glance background(const Vec3& light) {
-    Glance out;
+CameraRayResult background(const Vec3& light) {
+    CameraRayResult out;
     out.own = light;
     return out;
 }
 
-Glance surface(const Vec3& own, const Vec3& plain) {
-    Glance out;
+CameraRayResult surface(const Vec3& own, const Vec3& plain) {
+    CameraRayResult out;
     out.own = own;
     out.plain = plain;
     out.albedo = {0.5, 0.5, 0.5};
     return out;
 }
 
-void add_shown(PixelSum& sum, const Glance& glance, const Vec3& light) {
-    sum.add(glance, light, tone_mapped(light), glance.covers ? 1.0 : 0.0);
+void add_shown(PixelSum& sum, const CameraRayResult& result, const Vec3& light) {
+    sum.add(result, light, tone_mapped(light), result.covers ? 1.0 : 0.0);
 }
 
 TEST(PixelSum, SamplesAloneGiveTheirMean) {
@@ -40,7 +40,7 @@ TEST(PixelSum, ExtraRaysMeasureTheCoverageOfASurface) {
     PixelSum sum;
     for (int k = 0; k < 4; ++k) add_shown(sum, background(k == 0 ? kDark : kBright), k == 0 ? kDark : kBright);
     EXPECT_GT(sum.rays_wanted(), 0);
-    for (int k = 4; k < kGlances; ++k) sum.add(background(k < 11 ? kDark : kBright));
+    for (int k = 4; k < kMostPixelRays; ++k) sum.add(background(k < 11 ? kDark : kBright));
     const double expected = 0.5 * tone_mapped(kDark).x + 0.5 * tone_mapped(kBright).x;
     EXPECT_NEAR(sum.mean().light.x, expected, 1e-12);
     EXPECT_NEAR(sum.mean().albedo.x, 1.0, 1e-12);
@@ -49,7 +49,7 @@ TEST(PixelSum, ExtraRaysMeasureTheCoverageOfASurface) {
 // The surfaces have half of their unshadowed light, with samples and without.
 TEST(PixelSum, ExtraRaysAreLitLikeTheSamples) {
     PixelSum sum;
-    const Glance lit = surface({0.2, 0.2, 0.2}, {0.6, 0.6, 0.6});
+    const CameraRayResult lit = surface({0.2, 0.2, 0.2}, {0.6, 0.6, 0.6});
     add_shown(sum, lit, {0.5, 0.5, 0.5});
     add_shown(sum, background(kBright), kBright);
     sum.add(lit);
@@ -61,7 +61,7 @@ TEST(PixelSum, ExtraRaysAreLitLikeTheSamples) {
 
 TEST(PixelSum, OpenPartOfAPixelIsTheShareOfAllRays) {
     PixelSum sum;
-    Glance open;
+    CameraRayResult open;
     open.covers = false;
     add_shown(sum, background(kBright), kBright);
     add_shown(sum, open, {});
@@ -72,22 +72,22 @@ TEST(PixelSum, OpenPartOfAPixelIsTheShareOfAllRays) {
 
 PixelSum seen_twice(const Vec3& first, std::uint32_t surface, const Vec3& second, std::uint32_t other) {
     PixelSum sum;
-    Glance glance = background(first);
-    glance.surface = surface;
-    add_shown(sum, glance, first);
-    glance = background(second);
-    glance.surface = other;
-    add_shown(sum, glance, second);
+    CameraRayResult result = background(first);
+    result.surface = surface;
+    add_shown(sum, result, first);
+    result = background(second);
+    result.surface = other;
+    add_shown(sum, result, second);
     return sum;
 }
 
 TEST(PixelSum, VisibleOutlinesWantAllRaysAndPossiblyMissedOnesWantSome) {
-    EXPECT_EQ(seen_twice(kDark, 1, 2.0 * kDark, 2).rays_wanted(true), kGlances - 2);
-    EXPECT_LT(seen_twice(kDark, 1, 2.0 * kDark, 2).rays_wanted(false), kGlances - 2);
+    EXPECT_EQ(seen_twice(kDark, 1, 2.0 * kDark, 2).rays_wanted(true), kMostPixelRays - 2);
+    EXPECT_LT(seen_twice(kDark, 1, 2.0 * kDark, 2).rays_wanted(false), kMostPixelRays - 2);
     EXPECT_EQ(seen_twice(kDark, 1, kDark, 2).rays_wanted(true), 0);
     const int missed = seen_twice(kDark, 1, kDark, 1).rays_wanted(true);
     EXPECT_GT(missed, 0);
-    EXPECT_LT(missed, kGlances - 2);
+    EXPECT_LT(missed, kMostPixelRays - 2);
 }
 
 TEST(PixelSum, EvenPixelsAndPixelsWithManySamplesWantNoMoreRays) {
@@ -95,7 +95,7 @@ TEST(PixelSum, EvenPixelsAndPixelsWithManySamplesWantNoMoreRays) {
     for (int k = 0; k < 4; ++k) add_shown(even, background(kBright), kBright);
     EXPECT_EQ(even.rays_wanted(), 0);
     PixelSum many;
-    for (int k = 0; k < kGlances; ++k) add_shown(many, background(k % 2 == 0 ? kDark : kBright), kDark);
+    for (int k = 0; k < kMostPixelRays; ++k) add_shown(many, background(k % 2 == 0 ? kDark : kBright), kDark);
     EXPECT_EQ(many.rays_wanted(), 0);
 }
 

@@ -224,18 +224,18 @@ TEST(Preview, RaysSkipSpheresOnRequest) {
     const std::array<PreviewRay, 2> rays = {PreviewRay{{0.1, 0.2, 5}, {0, 0, -1}},
                                             PreviewRay{{0.1, 0.2, 0}, {0, 0, 1}}};
     std::array<std::optional<PreviewHit>, 2> hits;
-    preview.trace(rays, hits, SphereRays::left_out);
+    preview.trace(rays, hits, SphereRays::skipped);
     ASSERT_TRUE(hits[0]);
     EXPECT_EQ(hits[0]->kind, PreviewHit::Kind::mesh);
     EXPECT_FALSE(hits[1]);
     EXPECT_TRUE(preview.occluded(rays)[1]);
-    EXPECT_FALSE(preview.occluded(rays, SphereRays::left_out)[1]);
-    EXPECT_FALSE(preview.occluded(std::span(rays).subspan(1), SphereRays::left_out)[0]);
+    EXPECT_FALSE(preview.occluded(rays, SphereRays::skipped)[1]);
+    EXPECT_FALSE(preview.occluded(std::span(rays).subspan(1), SphereRays::skipped)[0]);
 }
 
 TEST(Preview, RaysHitSkippedSpheresOnceTheyArePrepared) {
     Preview preview({}, {}, {});
-    preview.set_moving({one_sphere({0, 0, 1}, 0.5), {}, {}}, SphereRays::left_out);
+    preview.set_moving({one_sphere({0, 0, 1}, 0.5), {}, {}}, SphereRays::skipped);
     const PreviewRay down{{0, 0, 5}, {0, 0, -1}};
     EXPECT_FALSE(preview.trace(down));
     EXPECT_EQ(preview.spheres().centers.size(), 1U);

@@ -161,7 +161,7 @@ TEST(Streaks, StreaksAreHitByCameraRaysAndNotByShadowRays) {
     preview.trace(std::span(&up, 1), std::span(&hit, 1));
     ASSERT_TRUE(hit);
     EXPECT_EQ(hit->emission, kGlow);
-    preview.trace(std::span(&up, 1), std::span(&hit, 1), SphereRays::met, GlowRays::left_out);
+    preview.trace(std::span(&up, 1), std::span(&hit, 1), SphereRays::traced, GlowRays::skipped);
     EXPECT_FALSE(hit);
     EXPECT_FALSE(preview.occluded(up));
 }

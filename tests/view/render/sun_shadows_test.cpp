@@ -42,7 +42,7 @@ TEST(SunShadows, CoverEveryPointInTheShadowOfASphere) {
         for (int k = 0; k < 5000; ++k) {
             const Vec3 point = Vec3{100, -20, 3} + 5.0 * draws.in_unit_ball();
             const bool expected = stands_before(spheres, point, to_light);
-            EXPECT_EQ(shadows.covers(point), expected) << "seed " << seed << ", point " << k;
+            EXPECT_EQ(shadows.is_shadowed(point), expected) << "seed " << seed << ", point " << k;
             dark += expected ? 1 : 0;
         }
         EXPECT_GT(dark, 300);
@@ -66,13 +66,13 @@ TEST(SunShadows, CoverEveryPointInTheShadowAlongASlantedRay) {
             const double v = k % 3 == 2 ? 0.0 : 0.6 * draws.uniform() - 0.3;
             const Vec3 direction = normalized(to_light + u * across + v * along);
             const bool expected = stands_before(spheres, point, direction);
-            EXPECT_EQ(shadows.covers(point, direction), expected) << "seed " << seed << ", point " << k;
+            EXPECT_EQ(shadows.is_shadowed(point, direction), expected) << "seed " << seed << ", point " << k;
             dark += expected ? 1 : 0;
         }
         EXPECT_GT(dark, 300);
         EXPECT_LT(dark, 4900);
     }
-    EXPECT_FALSE(SunShadows({}, {0, 0, 1}).covers({0, 0, 0}, {0, 0, 1}));
+    EXPECT_FALSE(SunShadows({}, {0, 0, 1}).is_shadowed({0, 0, 0}, {0, 0, 1}));
 }
 
 // Lengths range from dust to distances between planets. The slanted ray gives the position of a sphere's shadow on a
@@ -82,42 +82,42 @@ TEST(SunShadows, SlantedRaysDoNotDependOnTheUnitOfLength) {
         const DrawnSpheres pair{{{0, 0, 10.0 * unit}, {20.0 * unit, 0, 0}}, {unit, unit}, {}, {}};
         const SunShadows shadows(pair, {0, 0, 1});
         const Vec3 direction = normalized(Vec3{0.2, 0.1, 1});
-        EXPECT_TRUE(shadows.covers(unit * Vec3{-2, -1, 0}, direction)) << unit;
-        EXPECT_FALSE(shadows.covers({}, direction)) << unit;
-        EXPECT_TRUE(shadows.covers(unit * Vec3{20, 0, -5}, {0, 0, 1})) << unit;
+        EXPECT_TRUE(shadows.is_shadowed(unit * Vec3{-2, -1, 0}, direction)) << unit;
+        EXPECT_FALSE(shadows.is_shadowed({}, direction)) << unit;
+        EXPECT_TRUE(shadows.is_shadowed(unit * Vec3{20, 0, -5}, {0, 0, 1})) << unit;
     }
 }
 
 TEST(SunShadows, GridsPayForNarrowLightsAndThinClouds) {
     const SunShadows thin(cloud(6, 400, 0.05), {0, 0, 1});
-    EXPECT_TRUE(thin.pays(0.02));
-    EXPECT_FALSE(thin.pays(10.0));
+    EXPECT_TRUE(thin.is_faster_than_rays(0.02));
+    EXPECT_FALSE(thin.is_faster_than_rays(10.0));
     DrawnSpheres pile;
     for (int i = 0; i < 1000; ++i) {
         pile.centers.push_back({0.0, 0.0, 0.1 * i});
         pile.radii.push_back(0.05);
     }
-    EXPECT_FALSE(SunShadows(pile, {0, 0, 1}).pays(0.0));
-    EXPECT_TRUE(SunShadows(pile, {0, 0, 1}).pays()) << "looked at from the top";
+    EXPECT_FALSE(SunShadows(pile, {0, 0, 1}).is_faster_than_rays(0.0));
+    EXPECT_TRUE(SunShadows(pile, {0, 0, 1}).is_faster_than_rays()) << "looked at from the top";
 }
 
 TEST(SunShadows, GridsDoNotPayIfAnOutlierStretchesThem) {
     DrawnSpheres spheres = cloud(7, 4000, 0.15);
-    EXPECT_TRUE(SunShadows(spheres, {0, 0, 1}).pays());
+    EXPECT_TRUE(SunShadows(spheres, {0, 0, 1}).is_faster_than_rays());
     spheres.centers[0] = {1e6, 0, 0};
-    EXPECT_FALSE(SunShadows(spheres, {0, 0, 1}).pays());
+    EXPECT_FALSE(SunShadows(spheres, {0, 0, 1}).is_faster_than_rays());
 }
 
 TEST(SunShadows, PointOfASphereThatFacesTheLightIsLit) {
     const DrawnSpheres one{{{1, 2, 3}}, {0.5}, {}, {}};
     const Vec3 to_light = normalized(Vec3{1, 1, 2});
     const SunShadows shadows(one, to_light);
-    EXPECT_FALSE(shadows.covers(one.centers[0] + (0.5 + 1e-9) * to_light));
-    EXPECT_TRUE(shadows.covers(one.centers[0] + (0.5 - 1e-9) * to_light)) << "from inside";
-    EXPECT_TRUE(shadows.covers(one.centers[0] - 0.6 * to_light));
+    EXPECT_FALSE(shadows.is_shadowed(one.centers[0] + (0.5 + 1e-9) * to_light));
+    EXPECT_TRUE(shadows.is_shadowed(one.centers[0] + (0.5 - 1e-9) * to_light)) << "from inside";
+    EXPECT_TRUE(shadows.is_shadowed(one.centers[0] - 0.6 * to_light));
 }
 
-TEST(SunShadows, NoSpheresCastNoShadow) { EXPECT_FALSE(SunShadows({}, {0, 0, 1}).covers({0, 0, 0})); }
+TEST(SunShadows, NoSpheresCastNoShadow) { EXPECT_FALSE(SunShadows({}, {0, 0, 1}).is_shadowed({0, 0, 0})); }
 
 TEST(SunShadows, SpheresOnOneLineAndFarApartAreFound) {
     DrawnSpheres row;
@@ -127,8 +127,8 @@ TEST(SunShadows, SpheresOnOneLineAndFarApartAreFound) {
     }
     const SunShadows shadows(row, {0, 0, 1});
     for (int i = 0; i < 50; ++i) {
-        EXPECT_TRUE(shadows.covers({1e4 * i + 0.005, 0, 0}));
-        EXPECT_FALSE(shadows.covers({1e4 * i + 0.02, 0, 0}));
+        EXPECT_TRUE(shadows.is_shadowed({1e4 * i + 0.005, 0, 0}));
+        EXPECT_FALSE(shadows.is_shadowed({1e4 * i + 0.02, 0, 0}));
     }
 }
 

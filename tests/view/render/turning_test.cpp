@@ -11,8 +11,8 @@ namespace RICOCHET_FILE {
 TEST(Turning, QuarterTurnAboutZTakesXToYInAnyNumberOfSteps) {
     const Vec3 spin{0, 0, 0.5 * std::numbers::pi};
     Turn small;
-    for (int k = 0; k < 1000; ++k) small = turned_on(small, spin, 1e-3);
-    for (const Turn& turn : {turned_on({}, spin, 1.0), small}) {
+    for (int k = 0; k < 1000; ++k) small = rotation_after(small, spin, 1e-3);
+    for (const Turn& turn : {rotation_after({}, spin, 1.0), small}) {
         EXPECT_LT(length(map_of(turn).direction({1, 0, 0}) - Vec3(0, 1, 0)), 1e-12);
         EXPECT_LT(length(map_of(turn).direction({0, 1, 0}) - Vec3(-1, 0, 0)), 1e-12);
         EXPECT_LT(length(map_of(turn).direction({0, 0, 1}) - Vec3(0, 0, 1)), 1e-12);
@@ -21,8 +21,8 @@ TEST(Turning, QuarterTurnAboutZTakesXToYInAnyNumberOfSteps) {
 
 TEST(Turning, SpinThatIsZeroOrNotFiniteTurnsNothing) {
     const Turn turn = random_turn(3);
-    EXPECT_EQ(turned_on(turn, {}, 5.0).v, turn.v);
-    EXPECT_EQ(turned_on(turn, {1, 0, 0}, INFINITY).v, turn.v);
+    EXPECT_EQ(rotation_after(turn, {}, 5.0).v, turn.v);
+    EXPECT_EQ(rotation_after(turn, {1, 0, 0}, INFINITY).v, turn.v);
 }
 
 // Uniform turns make every direction equally likely: a component has the mean 0 and the mean square 1/3. The bounds are

@@ -24,22 +24,22 @@
 
 namespace ricochet::bench {
 
-Insides::Insides(const TriangleMesh& mesh, const Vec3& heart)
-    : mesh_(mesh), heart_(heart), bvh_(mesh.vertices, mesh.triangles, 0.0) {}
+StarShapedInterior::StarShapedInterior(const TriangleMesh& mesh, const Vec3& kernel_point)
+    : mesh_(mesh), kernel_point_(kernel_point), bvh_(mesh.vertices, mesh.triangles, 0.0) {}
 
-bool Insides::contains(const Vec3& p) const {
+bool StarShapedInterior::contains(const Vec3& p) const {
     bool is_seen = true;
-    bvh_.query_segment(heart_, p, [&](std::uint32_t triangle) {
+    bvh_.query_segment(kernel_point_, p, [&](std::uint32_t triangle) {
         const Triangle& t = mesh_.triangles[triangle];
         const auto& v = mesh_.vertices;
-        if (!segment_intersects_triangle(heart_, p, v[t[0]], v[t[1]], v[t[2]])) return 1.0;
+        if (!segment_intersects_triangle(kernel_point_, p, v[t[0]], v[t[1]], v[t[2]])) return 1.0;
         is_seen = false;
         return 0.0;
     });
     return is_seen;
 }
 
-bool Insides::contains_ball(const Vec3& middle, double radius) const {
+bool StarShapedInterior::contains_ball(const Vec3& middle, double radius) const {
     if (!contains(middle)) return false;
     if (radius == 0.0) return true;
     bool is_clear = true;
@@ -123,7 +123,7 @@ double radius_of(const Case& c, std::uint64_t index) {
 
 // Returns the lattice positions of a case. In a closed ground, the distance to the ground must be at least half the
 // pitch. A sphere then does not overlap the ground, whatever its random offset.
-std::vector<Vec3> lattice_places(const Case& c, const Insides* insides) {
+std::vector<Vec3> lattice_places(const Case& c, const StarShapedInterior* interior) {
     std::vector<Vec3> places;
     const Vec3 size = c.box.size();
     const auto count = [&](int axis) { return static_cast<std::size_t>(size[axis] / c.pitch) + 1; };
@@ -131,7 +131,7 @@ std::vector<Vec3> lattice_places(const Case& c, const Insides* insides) {
         const Vec3 step{static_cast<double>(k % count(0)), static_cast<double>(k / count(0) % count(1)),
                         static_cast<double>(k / count(0) / count(1))};
         const Vec3 placement = c.box.lower + c.pitch * step;
-        if (insides == nullptr || insides->contains_ball(placement, 0.5 * c.pitch)) places.push_back(placement);
+        if (interior == nullptr || interior->contains_ball(placement, 0.5 * c.pitch)) places.push_back(placement);
     }
     if (places.size() < c.particles) throw InputError("a benchmark case has more particles than lattice positions");
     return places;
@@ -147,7 +147,7 @@ Vec3 place_in(const Case& c, RandomSequence& random) {
 
 }  // namespace
 
-std::optional<Vec3> heart_of(Ground ground) {
+std::optional<Vec3> kernel_point_of(Ground ground) {
     if (ground == Ground::cavity) return Vec3{};
     if (ground == Ground::wedge) return Vec3{0.5, 0.0, 0.0};
     return std::nullopt;
@@ -161,11 +161,12 @@ std::shared_ptr<const TriangleMesh> make_mesh(const Case& c) {
 }
 
 std::vector<Particle> make_particles(const Case& c, const TriangleMesh& mesh) {
-    std::optional<Insides> insides;
-    const std::optional<Vec3> heart = heart_of(c.ground);
-    if (c.start == Start::inside || (c.start == Start::lattice && heart)) insides.emplace(mesh, heart.value());
+    std::optional<StarShapedInterior> interior;
+    const std::optional<Vec3> kernel_point = kernel_point_of(c.ground);
+    if (c.start == Start::inside || (c.start == Start::lattice && kernel_point))
+        interior.emplace(mesh, kernel_point.value());
     std::vector<Vec3> lattice;
-    if (c.start == Start::lattice) lattice = lattice_places(c, insides ? &*insides : nullptr);
+    if (c.start == Start::lattice) lattice = lattice_places(c, interior ? &*interior : nullptr);
     const double beside = 0.49 * c.pitch - c.largest_radius;
     std::vector<Particle> particles(c.particles);
     parallel_for_blocks(particles.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -175,7 +176,7 @@ std::vector<Particle> make_particles(const Case& c, const TriangleMesh& mesh) {
             RandomSequence random(kSeed, kPlaceStream, i);
             particle.position = lattice.empty() ? place_in(c, random) : lattice[i] + beside * random.unit_vector();
             if (c.density > 0.0) particle.mass = mass_of(c, particle.radius);
-            while (lattice.empty() && insides && !insides->contains_ball(particle.position, particle.radius)) {
+            while (lattice.empty() && interior && !interior->contains_ball(particle.position, particle.radius)) {
                 particle.position = place_in(c, random);
             }
             const double speed = random.uniform_around(c.speed, c.spread);
@@ -269,7 +270,7 @@ Simulation CaseRun::make_simulation() const {
     return Simulation(std::move(setup));
 }
 
-bool CaseRun::scout(const Announce& announce, std::vector<std::vector<Flight>>& states) {
+bool CaseRun::run_once(const Announce& announce, std::vector<std::vector<Flight>>& states) {
     Simulation simulation = make_simulation();
     const auto keep = [&](std::span<const std::byte> bytes) {
         start_.insert(start_.end(), bytes.begin(), bytes.end());
@@ -289,11 +290,11 @@ bool CaseRun::scout(const Announce& announce, std::vector<std::vector<Flight>>& 
         }
         simulation.step();
     }
-    course_.particle_steps = simulation.statistics().particle_steps - before.particle_steps;
-    course_.contacts = simulation.statistics().contacts - before.contacts;
-    course_.pair_impacts = simulation.statistics().pair_impacts - before.pair_impacts;
-    course_.largest_overlap = simulation.statistics().overlap_largest;
-    course_.state_hash = simulation.state_hash();
+    results_.particle_steps = simulation.statistics().particle_steps - before.particle_steps;
+    results_.contacts = simulation.statistics().contacts - before.contacts;
+    results_.pair_impacts = simulation.statistics().pair_impacts - before.pair_impacts;
+    results_.largest_overlap = simulation.statistics().overlap_largest;
+    results_.state_hash = simulation.state_hash();
     return true;
 }
 
@@ -301,19 +302,20 @@ bool CaseRun::prepare(const Announce& announce) {
     if (!announce("memory", 0)) return false;
     memory_ = measure_memory(case_, mesh_, particles_);
     std::vector<std::vector<Flight>> states;
-    if (!scout(announce, states)) return false;
+    if (!run_once(announce, states)) return false;
     if (!announce("references", 0)) return false;
     reference_.emplace(*mesh_, states, NativeRays::BounceRules{case_.time_step, case_.restitution});
     // Leaks are counted only for the response `exact`. Other responses let particles enter the wall, and flights of the
     // references would start inside the wall.
-    const std::optional<Vec3> heart = heart_of(case_.ground);
-    if (heart && case_.response == ResponseKind::exact) reference_->count_leaks(*mesh_, *heart);
+    const std::optional<Vec3> kernel_point = kernel_point_of(case_.ground);
+    if (kernel_point && case_.response == ResponseKind::exact) reference_->count_leaks(*mesh_, *kernel_point);
     if (case_.moves == Moves::nothing) return true;
     if (!announce("naive motion", 0)) return false;
     naive_.emplace(colliders_of(case_, mesh_), frames_of(case_));
     std::vector<Flight> flights = naive_start_;
     (void)naive_->run(flights, naive_steps());
-    if (heart) naive_leaks_ = count_outside(seen_from_ground(case_, std::move(flights), end_of_steps()), *heart);
+    if (kernel_point)
+        naive_leaks_ = count_outside(seen_from_ground(case_, std::move(flights), end_of_steps()), *kernel_point);
     return true;
 }
 
@@ -323,10 +325,10 @@ NaiveMotion::Steps CaseRun::naive_steps() const {
 
 double CaseRun::end_of_steps() const { return static_cast<double>(case_.warm_up + case_.steps) * case_.time_step; }
 
-std::uint64_t CaseRun::count_outside(const std::vector<Flight>& flights, const Vec3& heart) const {
-    const Insides insides(*mesh_, heart);
+std::uint64_t CaseRun::count_outside(const std::vector<Flight>& flights, const Vec3& kernel_point) const {
+    const StarShapedInterior interior(*mesh_, kernel_point);
     return static_cast<std::uint64_t>(std::count_if(
-        flights.begin(), flights.end(), [&](const Flight& flight) { return !insides.contains(flight.position); }));
+        flights.begin(), flights.end(), [&](const Flight& flight) { return !interior.contains(flight.position); }));
 }
 
 bool CaseRun::time_simulation(CaseTimes& times, const Announce& announce) {
@@ -348,7 +350,7 @@ bool CaseRun::time_simulation(CaseTimes& times, const Announce& announce) {
         });
     });
     if (!goes_on) return false;
-    if (simulation.state_hash() != course_.state_hash) {
+    if (simulation.state_hash() != results_.state_hash) {
         throw RunError(
             fmt::format("{} of suite {}: a repeat with {} threads has ended in another state than the first run",
                         case_.name, case_.suite, thread_count()));

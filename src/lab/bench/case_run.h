@@ -24,9 +24,9 @@ namespace ricochet::bench {
 
 // Creation of a case's mesh, particles and simulation.
 
-/// Returns the heart of a closed ground: a point that is connected with every point inside by a straight line inside.
-/// Returns std::nullopt if the ground is open.
-[[nodiscard]] std::optional<Vec3> heart_of(Ground ground);
+/// Returns the kernel point of a closed ground: a point that is connected with every point inside by a straight line
+/// inside. Returns std::nullopt if the ground is open.
+[[nodiscard]] std::optional<Vec3> kernel_point_of(Ground ground);
 
 /// Creates the case's mesh, with approximately Case::triangles triangles.
 [[nodiscard]] std::shared_ptr<const TriangleMesh> make_mesh(const Case& c);
@@ -38,15 +38,15 @@ namespace ricochet::bench {
 /// Creates the setup of the case's simulation without its particles.
 [[nodiscard]] SimulationSetup make_setup(const Case& c, const std::shared_ptr<const TriangleMesh>& mesh);
 
-// Inside tests for a closed mesh with a heart, see heart_of().
+// Inside tests for a closed mesh with a kernel point, see kernel_point_of().
 
 /// Interior of one mesh. Safe from any number of threads.
-class Insides {
+class StarShapedInterior {
 public:
-    /// The mesh must be closed and star-shaped about the heart, and must outlive this object.
-    Insides(const TriangleMesh& mesh, const Vec3& heart);
+    /// The mesh must be closed and star-shaped about the kernel point, and must outlive this object.
+    StarShapedInterior(const TriangleMesh& mesh, const Vec3& kernel_point);
 
-    /// Returns true if the segment from the heart to p hits no triangle. The decision is exact.
+    /// Returns true if the segment from the kernel point to p hits no triangle. The decision is exact.
     [[nodiscard]] bool contains(const Vec3& p) const;
     /// Returns true if a ball's centre is inside, and if the distance from the centre to each triangle is at least the
     /// radius (in m, >= 0). Distances have rounding errors.
@@ -54,7 +54,7 @@ public:
 
 private:
     const TriangleMesh& mesh_;
-    Vec3 heart_;
+    Vec3 kernel_point_;
     TriangleBvh bvh_;
 };
 
@@ -97,7 +97,7 @@ using Announce = std::function<bool(std::string_view doing, std::uint64_t step)>
 inline constexpr std::uint64_t kReferenceFlights = 4'000'000;
 
 /// Results of the measured steps. They are the same in every repeat.
-struct Course {
+struct CaseResults {
     std::uint64_t particle_steps = 0;
     std::uint64_t contacts = 0;
     std::uint64_t pair_impacts = 0;  ///< impacts between spheres that are resolved sequentially
@@ -123,7 +123,7 @@ public:
     [[nodiscard]] std::size_t particles() const { return particles_.size(); }
     [[nodiscard]] std::size_t triangles() const { return mesh_->triangles.size(); }
     [[nodiscard]] const MemoryUse& memory() const { return memory_; }
-    [[nodiscard]] const Course& course() const { return course_; }
+    [[nodiscard]] const CaseResults& results() const { return results_; }
     /// Requires prepare().
     [[nodiscard]] const Reference& reference() const { return *reference_; }
     /// Returns the number of particles that NaiveMotion moved outside a closed moving ground. Returns std::nullopt for
@@ -132,11 +132,11 @@ public:
 
 private:
     [[nodiscard]] Simulation make_simulation() const;
-    [[nodiscard]] bool scout(const Announce& announce, std::vector<std::vector<Flight>>& states);
+    [[nodiscard]] bool run_once(const Announce& announce, std::vector<std::vector<Flight>>& states);
     [[nodiscard]] bool time_simulation(CaseTimes& times, const Announce& announce);
     [[nodiscard]] NaiveMotion::Steps naive_steps() const;
     [[nodiscard]] double end_of_steps() const;
-    [[nodiscard]] std::uint64_t count_outside(const std::vector<Flight>& flights, const Vec3& heart) const;
+    [[nodiscard]] std::uint64_t count_outside(const std::vector<Flight>& flights, const Vec3& kernel_point) const;
 
     Case case_;
     std::shared_ptr<const TriangleMesh> mesh_;
@@ -144,7 +144,7 @@ private:
     /// Saved state before the last step of the warm-up, or the initial state if there is no warm-up.
     std::vector<std::byte> start_;
     MemoryUse memory_;
-    Course course_;
+    CaseResults results_;
     std::optional<Reference> reference_;
     std::optional<NaiveMotion> naive_;  ///< set if a collider moves
     std::vector<Flight> naive_start_;

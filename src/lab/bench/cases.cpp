@@ -134,7 +134,7 @@ Case with_radii(Case c, std::string_view base, double least, double largest) {
 }
 
 // Gas with gravity, so that every response has to support particles.
-Case answered_by(ResponseKind response) {
+Case response_case(ResponseKind response) {
     Case c = gas("response", name_of(response), 20'000, 100'000, kGasStep);
     c.gravity = 9.81;
     c.response = response;
@@ -145,7 +145,7 @@ Case answered_by(ResponseKind response) {
 
 // Returns a group of two cases without look-ahead. In the first case no collider moves, and in the second case
 // colliders move.
-std::vector<Case> beside_rest(Case c, std::string_view at_rest, std::string_view moving, Moves moves) {
+std::vector<Case> rest_and_moving_cases(Case c, std::string_view at_rest, std::string_view moving, Moves moves) {
     c.against = Against::at_rest;
     c.base = c.name = at_rest;
     c.looks_ahead = false;
@@ -211,7 +211,7 @@ Cases radius_cases() {
 
 Cases response_cases() {
     Cases cases;
-    for (const ResponseKind kind : response_kinds()) cases.push_back(answered_by(kind));
+    for (const ResponseKind kind : response_kinds()) cases.push_back(response_case(kind));
     return cases;
 }
 
@@ -230,16 +230,16 @@ Cases moving_cases() {
     rocks.start = Start::box;
     rocks.box = {{-11, -11, -11}, {11, 11, 11}};
     Cases cases;
-    append(cases, beside_rest(hits, "hits-rest", "hits-shaken", Moves::shaken));
-    append(cases, beside_rest(inside, "inside-rest", "inside-spinning", Moves::spinning));
-    append(cases, beside_rest(inside, "far-rest", "far-moving", Moves::bystander));
-    append(cases, beside_rest(inside, "deforming-rest", "deforming", Moves::breathing));
-    append(cases, beside_rest(rocks, "rocks-rest", "rocks-spinning", Moves::spinning));
+    append(cases, rest_and_moving_cases(hits, "hits-rest", "hits-shaken", Moves::shaken));
+    append(cases, rest_and_moving_cases(inside, "inside-rest", "inside-spinning", Moves::spinning));
+    append(cases, rest_and_moving_cases(inside, "far-rest", "far-moving", Moves::bystander));
+    append(cases, rest_and_moving_cases(inside, "deforming-rest", "deforming", Moves::breathing));
+    append(cases, rest_and_moving_cases(rocks, "rocks-rest", "rocks-spinning", Moves::spinning));
     return cases;
 }
 
 // Returns a group of two cases: spheres that pass through each other, and spheres that collide.
-std::vector<Case> beside_apart(Case c, std::string_view apart, std::string_view together) {
+std::vector<Case> apart_and_together_cases(Case c, std::string_view apart, std::string_view together) {
     c.against = Against::apart;
     c.base = c.name = apart;
     Case other = c;
@@ -308,8 +308,8 @@ Case tumbling_spheres() {
 
 Cases pair_cases() {
     Cases cases;
-    append(cases, beside_apart(dilute_spheres(), "dilute-apart", "dilute"));
-    append(cases, beside_apart(filling_spheres(10'000), "filling-apart", "filling"));
+    append(cases, apart_and_together_cases(dilute_spheres(), "dilute-apart", "dilute"));
+    append(cases, apart_and_together_cases(filling_spheres(10'000), "filling-apart", "filling"));
     Case pile = with_steps(filling_spheres(2000), 2500, 1000);
     pile.name = "pile";
     pile.spheres_meet = true;

@@ -92,7 +92,7 @@ Row row_of(const CaseRun& run, const CaseTimes& times) {
     const auto rate = [](std::uint64_t count, const std::vector<double>& seconds) {
         return static_cast<double>(count) / median(seconds);
     };
-    const Course& course = run.course();
+    const CaseResults& results = run.results();
     const Reference& reference = run.reference();
     const std::uint64_t rays = reference.rays();
     Row row;
@@ -102,18 +102,18 @@ Row row_of(const CaseRun& run, const CaseTimes& times) {
     row.particles = run.particles();
     row.triangles = run.triangles();
     row.steps = run.description().steps;
-    row.particle_steps = course.particle_steps;
-    row.contacts = course.contacts;
+    row.particle_steps = results.particle_steps;
+    row.contacts = results.contacts;
     row.seconds = median(times.simulation);
-    row.particle_steps_per_second = rate(course.particle_steps, times.simulation);
-    row.contacts_per_second = rate(course.contacts, times.simulation);
+    row.particle_steps_per_second = rate(results.particle_steps, times.simulation);
+    row.contacts_per_second = rate(results.contacts, times.simulation);
     row.raw_rays_per_second = rate(rays, times.raw);
-    row.ratio_raw = ratio_of(course.particle_steps, times.simulation, rays, times.raw);
+    row.ratio_raw = ratio_of(results.particle_steps, times.simulation, rays, times.raw);
     row.raw_sorted_rays_per_second = rate(rays, times.sorted);
-    row.ratio_raw_sorted = ratio_of(course.particle_steps, times.simulation, rays, times.sorted);
+    row.ratio_raw_sorted = ratio_of(results.particle_steps, times.simulation, rays, times.sorted);
     row.native_bounces_per_second = rate(reference.bounces(), times.bounces);
     if (reference.bounces() > 0) {
-        row.ratio_native_bounces = ratio_of(course.contacts, times.simulation, reference.bounces(), times.bounces);
+        row.ratio_native_bounces = ratio_of(results.contacts, times.simulation, reference.bounces(), times.bounces);
     }
     row.leaks = reference.leaks();
     if (!times.naive.empty()) row.ratio_naive = median_ratio(times.naive, times.simulation);
@@ -121,10 +121,10 @@ Row row_of(const CaseRun& run, const CaseTimes& times) {
     if (run.description().spheres_meet) {
         const double simulated = static_cast<double>(row.steps) * run.description().time_step;
         row.seconds_a_simulated_second = row.seconds / simulated;
-        row.largest_overlap = course.largest_overlap;
-        if (course.pair_impacts > 0) row.seconds_an_impact = row.seconds / static_cast<double>(course.pair_impacts);
+        row.largest_overlap = results.largest_overlap;
+        if (results.pair_impacts > 0) row.seconds_an_impact = row.seconds / static_cast<double>(results.pair_impacts);
     }
-    row.state_hash = course.state_hash;
+    row.state_hash = results.state_hash;
     row.bytes_per_particle = run.memory().bytes_per_particle;
     row.bytes_per_triangle = run.memory().bytes_per_triangle;
     return row;
@@ -153,8 +153,8 @@ std::vector<Row> Measurer::rows() const {
                 row.speedup_raw = median_ratio(times[*single].raw, times[k].raw);
             }
             // Time of a particle-step of the case, relative to the base case.
-            const double cost = ratio_of(base.course().particle_steps, times_.front()[k].simulation,
-                                         run.course().particle_steps, times[k].simulation);
+            const double cost = ratio_of(base.results().particle_steps, times_.front()[k].simulation,
+                                         run.results().particle_steps, times[k].simulation);
             if (run.description().against == Against::points) row.ratio_points = cost;
             if (run.description().against == Against::exact) row.ratio_exact = cost;
             if (run.description().against == Against::at_rest) row.ratio_rest = cost;

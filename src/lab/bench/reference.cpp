@@ -74,13 +74,13 @@ Reference::Reference(const TriangleMesh& mesh, const std::vector<std::vector<Fli
     ends_.resize(flights_.size());
 }
 
-void Reference::count_leaks(const TriangleMesh& mesh, const Vec3& heart) {
+void Reference::count_leaks(const TriangleMesh& mesh, const Vec3& kernel_point) {
     bounce();
-    const Insides insides(mesh, heart);
+    const StarShapedInterior interior(mesh, kernel_point);
     std::atomic<std::uint64_t> outside{0};
     parallel_for_blocks(ends_.size(), kReferenceBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            if (!insides.contains(ends_[i])) outside.fetch_add(1, std::memory_order_relaxed);
+            if (!interior.contains(ends_[i])) outside.fetch_add(1, std::memory_order_relaxed);
         }
     });
     leaks_ = outside.load();

@@ -37,9 +37,9 @@ public:
     /// Runs the usual bounce loop, in arbitrary order.
     void bounce() { bounces_ = rays_.bounce(flights_, rules_, ends_); }
 
-    /// Runs the bounce loop and counts the flights that end outside a closed mesh. `heart` is the heart of the mesh,
-    /// see heart_of().
-    void count_leaks(const TriangleMesh& mesh, const Vec3& heart);
+    /// Runs the bounce loop and counts the flights that end outside a closed mesh. `kernel_point` is the kernel point
+    /// of the mesh, see kernel_point_of().
+    void count_leaks(const TriangleMesh& mesh, const Vec3& kernel_point);
 
     [[nodiscard]] std::size_t rays() const { return flights_.size(); }
     /// Returns the number of bounces of the last call of bounce().

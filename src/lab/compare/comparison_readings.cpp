@@ -147,7 +147,7 @@ std::string tunnel_reading(const Comparison& comparison) {
 
 std::string short_text(double number) { return std::isfinite(number) ? fmt::format("{:.3g}", number) : "-"; }
 
-std::string reading_of(const std::string& picture, const Comparison& comparison) {
+std::string describe_picture(const std::string& picture, const Comparison& comparison) {
     if (picture == "cost.png") return cost_reading(comparison);
     if (picture == "error_position.png") return position_reading(comparison);
     if (picture == "error_impact.png") return impact_reading(comparison);

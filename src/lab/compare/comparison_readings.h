@@ -13,6 +13,6 @@ namespace ricochet {
 
 /// Returns one or two sentences that describe a picture. `picture` must be one of kComparisonPictures, otherwise
 /// std::invalid_argument is thrown.
-[[nodiscard]] std::string reading_of(const std::string& picture, const Comparison& comparison);
+[[nodiscard]] std::string describe_picture(const std::string& picture, const Comparison& comparison);
 
 }  // namespace ricochet

@@ -117,7 +117,7 @@ std::vector<Block> blocks_of(const Comparison& comparison, const ComparisonSourc
                   "exact, at the same step and at the longest step of exact whose error is no larger.")};
     if (!remark.empty()) blocks.push_back(paragraph(remark));
     for (const char* picture : kComparisonPictures) {
-        blocks.push_back(paragraph(reading_of(picture, comparison)));
+        blocks.push_back(paragraph(describe_picture(picture, comparison)));
         if (std::find(pictures.begin(), pictures.end(), picture) != pictures.end()) {
             blocks.push_back({Block::Kind::picture, picture, {}});
         }

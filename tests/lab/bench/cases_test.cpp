@@ -47,7 +47,7 @@ TEST(BenchCases, AreCompleteAndHaveUniqueNames) {
         EXPECT_GE(c.steps, 1U);
         EXPECT_GT(c.time_step, 0.0);
         EXPECT_FALSE(c.box.empty());
-        EXPECT_TRUE(c.start != Start::inside || heart_of(c.ground).has_value());
+        EXPECT_TRUE(c.start != Start::inside || kernel_point_of(c.ground).has_value());
     }
 }
 
@@ -118,8 +118,8 @@ TEST(BenchCases, StartInsideTheirClosedGrounds) {
     for (const char* suite : {"gas", "pinball", "wedge"}) {
         const Case c = small_case(suite);
         const auto mesh = make_mesh(c);
-        const Insides insides(*mesh, heart_of(c.ground).value());
-        for (const Particle& particle : make_particles(c, *mesh)) EXPECT_TRUE(insides.contains(particle.position));
+        const StarShapedInterior interior(*mesh, kernel_point_of(c.ground).value());
+        for (const Particle& particle : make_particles(c, *mesh)) EXPECT_TRUE(interior.contains(particle.position));
     }
 }
 

@@ -17,12 +17,12 @@ constexpr int kOpen = -1;  // no guard exists, so a signal may end the process a
 
 // The recorded signal, 0 while a guard exists and no signal has arrived, or kOpen. Handlers on any thread access this
 // variable.
-std::atomic<int> noted = kOpen;
+std::atomic<int> recorded_signal = kOpen;
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may use nothing else");
 
 void handle(int signal) {
     int nothing = 0;
-    if (noted.compare_exchange_strong(nothing, signal)) return;
+    if (recorded_signal.compare_exchange_strong(nothing, signal)) return;
     ProgressLine::erase_at_the_end();
     remove_unfinished_files();
     ::_exit(kSignalled + signal);
@@ -51,12 +51,12 @@ void end_at_interrupts() {
     }
 }
 
-InterruptGuard::InterruptGuard() { noted = 0; }
+InterruptGuard::InterruptGuard() { recorded_signal = 0; }
 
-InterruptGuard::~InterruptGuard() { noted = kOpen; }
+InterruptGuard::~InterruptGuard() { recorded_signal = kOpen; }
 
 int InterruptGuard::signal() {
-    const int signal = noted;
+    const int signal = recorded_signal;
     return signal == kOpen ? 0 : signal;
 }
 

@@ -47,7 +47,8 @@ void RunPictures::color_colliders(const RunFolder& folder) {
             if (one.file == file.filename().string()) info = one;
         }
         add_impulse_sizes(data, info, impulse_sizes_);
-        if (are_behind(folder, data.time)) totals_end_ = std::min(totals_end_.value_or(data.time), data.time);
+        if (has_incomplete_totals(folder, data.time))
+            totals_end_ = std::min(totals_end_.value_or(data.time), data.time);
         const auto index = static_cast<std::uint32_t>(index_of_collider_file(file.filename().string()).value_or(0));
         values.push_back(quantity_values(quantity, data, info, index, energies, data.time));
         const std::vector<double> areas = triangle_areas(data, info);

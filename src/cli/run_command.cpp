@@ -103,7 +103,7 @@ struct RunPlan {
 };
 
 // Grace period for the step in progress when a signal arrives. After this period, the step is abandoned.
-class PatienceWithStep {
+class StepGracePeriod {
 public:
     // Returns true while the step may continue. Any thread may call this function.
     [[nodiscard]] bool goes_on() {
@@ -135,11 +135,11 @@ std::optional<std::string> step_and_write(Simulation& simulation, cli::RunOutput
         progress.show(simulation, counts, plan.share(output.seconds()));
         return plan.run->signal() == 0;
     };
-    PatienceWithStep patience;
+    StepGracePeriod grace_period;
     while (!simulation.finished() && plan.run->signal() == 0) {
         try {
             simulation.advance(plan.output.every - simulation.step_index() % plan.output.every, after_step,
-                               [&] { return patience.goes_on(); });
+                               [&] { return grace_period.goes_on(); });
         } catch (const StoppedError&) {
             return std::nullopt;
         } catch (const DivergedError& error) {
@@ -254,7 +254,7 @@ std::optional<Checkpoint> resume(const RunArguments& arguments, PreparedRun& pre
 }
 
 // Returns values that must be equal on all ranks. They are compared before any rank opens a file.
-std::vector<std::uint64_t> what_is_asked(const RunArguments& arguments, const PreparedRun& prepared) {
+std::vector<std::uint64_t> values_to_compare(const RunArguments& arguments, const PreparedRun& prepared) {
     StateHash names;
     for (const std::string& name : {arguments.output, arguments.output_state}) {
         names.add(name.size());
@@ -312,7 +312,7 @@ std::optional<int> share_folder(const RunArguments& arguments, const cli::Shared
 // Runs all preparations. Returns the exit code if another process failed.
 std::optional<int> prepare_together(const RunArguments& arguments, const cli::SharedRun& run, PreparedRun& prepared) {
     if (const auto failed = run.together([&] { prepare(arguments, run, prepared); })) return failed;
-    if (const auto failed = run.require_alike(what_is_asked(arguments, prepared))) return failed;
+    if (const auto failed = run.require_alike(values_to_compare(arguments, prepared))) return failed;
     if (const auto failed = run.together([&] { prepared.simulation->have_meshes_in_common(); })) return failed;
     if (const auto failed = run.together([&] { open_folder(arguments, prepared); })) return failed;
     std::vector<std::uint64_t> alike;
@@ -328,8 +328,8 @@ std::optional<int> prepare_together(const RunArguments& arguments, const cli::Sh
 }
 
 // Writes the last frame, the totals of the colliders, the final state and the summary.
-RunSummary write_the_end(const RunArguments& arguments, PreparedRun& prepared, const cli::RunResources& of_others,
-                         const std::optional<std::string>& diverged) {
+RunSummary write_final_output(const RunArguments& arguments, PreparedRun& prepared, const cli::RunResources& of_others,
+                              const std::optional<std::string>& diverged) {
     Simulation& simulation = *prepared.simulation;
     RunWriter& writer = *prepared.writer;
     const bool is_interrupted = !simulation.finished() && !diverged;
@@ -385,7 +385,7 @@ int cli::run_scene(const RunArguments& arguments) {
     if (!diverged && !simulation.finished()) prepared.out.write_checkpoint(simulation, prepared.plan.seconds());
     const RunResources of_others = run.resources_of_others();
     std::optional<RunSummary> summary;
-    simulation.show_whole(Shown::all, [&] { summary = write_the_end(arguments, prepared, of_others, diverged); });
+    simulation.show_whole(Shown::all, [&] { summary = write_final_output(arguments, prepared, of_others, diverged); });
     run.end();
     return report(arguments, simulation, summary, diverged, run.signal());
 }

@@ -42,12 +42,12 @@ std::vector<double> radii_of(const VtkPolyData& frame) {
 
 // Returns the number of positions along a drawn path. Paths that only gravity bends need few positions. With impacts,
 // more positions are needed, because a straight piece between two positions cuts off the corner at an impact.
-std::size_t way_steps(const ShutterPaths& paths) {
+std::size_t path_steps(const ShutterPaths& paths) {
     const bool bends = std::any_of(paths.nodes.begin(), paths.nodes.end(), [](const auto& nodes) {
         return std::any_of(nodes.begin(), nodes.end(),
                            [](const PathNode& node) { return node.velocity_before != node.velocity_after; });
     });
-    return bends ? kMostWaySteps : kFewWaySteps;
+    return bends ? kMostPathSteps : kFewPathSteps;
 }
 
 }  // namespace
@@ -126,9 +126,10 @@ void RunPictures::keep_off_walls(const Moment& moment, const Group& group, Previ
 }
 
 /// Sets the paths that spheres take while the shutter is open.
-void RunPictures::set_ways(const Moment& moment, const std::vector<std::size_t>& shown, PreviewSpheres& spheres) const {
+void RunPictures::set_shutter_paths(const Moment& moment, const std::vector<std::size_t>& shown,
+                                    PreviewSpheres& spheres) const {
     const ShutterPaths& paths = moment.paths;
-    const std::size_t steps = way_steps(paths);
+    const std::size_t steps = path_steps(paths);
     spheres.shutter_paths.resize(shown.size());
     for (std::size_t k = 0; k < shown.size(); ++k) {
         const Vec3 off_walls = spheres.centers[k] - moment.frame.points[shown[k]];
@@ -156,7 +157,7 @@ void RunPictures::add_solid(const Moment& moment, const Group& group, PreviewSph
         return;
     }
     keep_off_walls(moment, group, spheres);
-    if (!moment.paths.empty()) set_ways(moment, group.shown, spheres);
+    if (!moment.paths.empty()) set_shutter_paths(moment, group.shown, spheres);
     if (group.drawing->is_copy()) {
         add_copies(moment, group, std::move(spheres), moving.copies);
         return;

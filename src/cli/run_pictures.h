@@ -39,9 +39,9 @@ inline constexpr double kParticleAlbedo = 0.8;  ///< factor on the colours of th
                                                 ///< not saturate
 
 /// Largest number of positions along the path of a sphere while the shutter is open.
-inline constexpr std::size_t kMostWaySteps = 65;
+inline constexpr std::size_t kMostPathSteps = 65;
 /// Number of these positions if no sphere hits a surface or a sphere.
-inline constexpr std::size_t kFewWaySteps = 9;
+inline constexpr std::size_t kFewPathSteps = 9;
 
 /// Array of the temperatures in K that make particles glow.
 inline constexpr const char* kTemperature = "temperature";
@@ -229,7 +229,7 @@ private:
     [[nodiscard]] PreviewSpheres spheres_of(const Group& group, const VtkPolyData& frame,
                                             const std::vector<Vec3>& colors, const std::vector<double>& radii) const;
     void add_solid(const Moment& moment, const Group& group, PreviewSpheres&& spheres, PreviewMoving& moving);
-    void set_ways(const Moment& moment, const std::vector<std::size_t>& shown, PreviewSpheres& spheres) const;
+    void set_shutter_paths(const Moment& moment, const std::vector<std::size_t>& shown, PreviewSpheres& spheres) const;
     void keep_off_walls(const Moment& moment, const Group& group, PreviewSpheres& spheres);
     [[nodiscard]] WallClearance walls_at_rest() const;
     static void add_streaks(const ShutterPaths& paths, const std::vector<std::size_t>& shown,

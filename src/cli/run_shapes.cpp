@@ -128,15 +128,16 @@ void RunPictures::widen_subject(const VtkPolyData& frame) {
 
 void RunPictures::require_room_for_copies() const {
     if (!draws_copies()) return;
-    constexpr double kCopy = 600.0;      // bytes of a copy, including its entries in the lists of a picture and in
-                                         // Embree's BVH
-    constexpr double kWayPoint = 300.0;  // bytes of a point of a path: two copies of the point, and its entry in the
-                                         // BVH
+    constexpr double kCopy = 600.0;       // bytes of a copy, including its entries in the lists of a picture and in
+                                          // Embree's BVH
+    constexpr double kPathPoint = 300.0;  // bytes of a point of a path: two copies of the point, and its entry in the
+                                          // BVH
     constexpr double kTriangle = 400.0;
-    const double ways = shutter() > 0.0 ? kWayPoint * (timeline_.knows_impacts() ? kMostWaySteps : kFewWaySteps) : 0.0;
+    const double paths =
+        shutter() > 0.0 ? kPathPoint * (timeline_.knows_impacts() ? kMostPathSteps : kFewPathSteps) : 0.0;
     double triangles = 0.0;
     for (const TriangleMesh& shape : shapes_) triangles += static_cast<double>(shape.triangles.size());
-    require_memory(static_cast<double>(most_particles_) * (kCopy + ways) + triangles * kTriangle,
+    require_memory(static_cast<double>(most_particles_) * (kCopy + paths) + triangles * kTriangle,
                    fmt::format("a picture of {} particles as {}", most_particles_,
                                shapes_.empty() ? "spheres that stretch" : "meshes"));
 }

@@ -130,7 +130,7 @@ int visit_functions(const UserForces& forces, visitproc visit, void* arg) {
     return 0;
 }
 
-void let_go_of_functions(const UserForces& forces) {
+void release_functions(const UserForces& forces) {
     for (const auto& force : forces) user_force(force).let_go();
 }
 

@@ -93,16 +93,16 @@ py::array triangulated(const py::object& vertices, const py::object& offsets, co
 }
 
 /// Largest number of queries that run as a single block on one thread.
-constexpr py::ssize_t kFewQuestions = 256;
+constexpr py::ssize_t kFewQueries = 256;
 
 /// Makes `count` queries while other Python threads run. Ctrl-C ends the queries. Uses a copy of the mesh, so that
 /// another thread may call set_vertices() meanwhile. transform: placement of the mesh, or None.
-template <class Ask>
-auto ask(const MeshQueries& mesh, py::ssize_t count, const py::object& transform, const Ask& question) {
-    const auto answer = [&](const auto& asked) {
-        return CtrlC().run(count <= kFewQuestions, [&] { return question(asked); });
+template <class Query>
+auto run_queries(const MeshQueries& mesh, py::ssize_t count, const py::object& transform, const Query& query) {
+    const auto run = [&](const auto& queries) {
+        return CtrlC().run(count <= kFewQueries, [&] { return query(queries); });
     };
-    return transform.is_none() ? answer(MeshQueries(mesh)) : answer(PlacedMesh(mesh, map_of(transform)));
+    return transform.is_none() ? run(MeshQueries(mesh)) : run(PlacedMesh(mesh, map_of(transform)));
 }
 
 py::object result(const char* name) { return py::module_::import("ricochet._results").attr(name); }
@@ -133,7 +133,7 @@ HitsObject first_hits(const MeshQueries& mesh, const py::object& origins, const 
                       const py::object& most, const py::object& transform) {
     const Rays rays(origins, directions, most);
     const RayBatch batch = rays.batch();
-    return hits_of(ask(mesh, rays.count(), transform, [&](const auto& m) { return m.first_hits(batch); }));
+    return hits_of(run_queries(mesh, rays.count(), transform, [&](const auto& m) { return m.first_hits(batch); }));
 }
 
 /// Returns AllHits, and one flag for each hit. The flag is true if the ray lies in the plane of every triangle that it
@@ -143,7 +143,7 @@ py::tuple all_hits_and_planes(const MeshQueries& mesh, const py::object& origins
     const Rays rays(origins, directions, most);
     const RayBatch batch = rays.batch();
     std::vector<std::int64_t> ray;
-    AllMeshHits all = ask(mesh, rays.count(), transform, [&](const auto& m) {
+    AllMeshHits all = run_queries(mesh, rays.count(), transform, [&](const auto& m) {
         AllMeshHits found = m.all_hits(batch);
         ray.reserve(found.first.back());
         for (std::size_t i = 0; i + 1 < found.first.size(); ++i) {
@@ -166,14 +166,14 @@ py::array count_hits(const MeshQueries& mesh, const py::object& origins, const p
                      const py::object& most, const py::object& transform) {
     const Rays rays(origins, directions, most);
     const RayBatch batch = rays.batch();
-    return given(ask(mesh, rays.count(), transform, [&](const auto& m) { return m.count_hits(batch); }));
+    return given(run_queries(mesh, rays.count(), transform, [&](const auto& m) { return m.count_hits(batch); }));
 }
 
 py::array occluded(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
                    const py::object& most, const py::object& transform) {
     const Rays rays(origins, directions, most);
     const RayBatch batch = rays.batch();
-    return given_flags(ask(mesh, rays.count(), transform, [&](const auto& m) { return m.occluded(batch); }));
+    return given_flags(run_queries(mesh, rays.count(), transform, [&](const auto& m) { return m.occluded(batch); }));
 }
 
 InsideRule rule_named(const std::string& name) {
@@ -187,20 +187,20 @@ py::array inside(const MeshQueries& mesh, const py::object& where, const std::st
     const Doubles places = numbers(where, "points", 3);
     const InsideRule chosen = rule_named(rule);
     return given_flags(
-        ask(mesh, places.shape(0), transform, [&](const auto& m) { return m.inside(points(places), chosen); }));
+        run_queries(mesh, places.shape(0), transform, [&](const auto& m) { return m.inside(points(places), chosen); }));
 }
 
 py::array winding_numbers(const MeshQueries& mesh, const py::object& where, const py::object& transform) {
     const Doubles places = numbers(where, "points", 3);
-    return given(
-        ask(mesh, places.shape(0), transform, [&](const auto& m) { return m.winding_numbers(points(places)); }));
+    return given(run_queries(mesh, places.shape(0), transform,
+                             [&](const auto& m) { return m.winding_numbers(points(places)); }));
 }
 
 HitsObject closest_points(const MeshQueries& mesh, const py::object& where, double within,
                           const py::object& transform) {
     const Doubles places = numbers(where, "points", 3);
-    NearestPoints found =
-        ask(mesh, places.shape(0), transform, [&](const auto& m) { return m.closest_points(points(places), within); });
+    NearestPoints found = run_queries(mesh, places.shape(0), transform,
+                                      [&](const auto& m) { return m.closest_points(points(places), within); });
     return result("Hits")(given(std::move(found.triangle)), given(std::move(found.distance)),
                           given(std::move(found.point)));
 }
@@ -209,8 +209,8 @@ py::array signed_distances(const MeshQueries& mesh, const py::object& where, con
                            const py::object& transform) {
     const Doubles places = numbers(where, "points", 3);
     const InsideRule chosen = rule_named(rule);
-    return given(ask(mesh, places.shape(0), transform,
-                     [&](const auto& m) { return m.signed_distances(points(places), chosen); }));
+    return given(run_queries(mesh, places.shape(0), transform,
+                             [&](const auto& m) { return m.signed_distances(points(places), chosen); }));
 }
 
 HitsObject sweep(const MeshQueries& mesh, const py::object& from, const py::object& to, const py::object& radius,
@@ -221,11 +221,12 @@ HitsObject sweep(const MeshQueries& mesh, const py::object& from, const py::obje
     repeat_one(ends, starts, "to_points");
     const Doubles radii = numbers_or_one(radius, "radius");
     if (vertices_after.is_none()) {
-        return hits_of(ask(mesh, starts.shape(0), transform,
-                           [&](const auto& m) { return m.sweep(points(starts), points(ends), values(radii)); }));
+        return hits_of(run_queries(mesh, starts.shape(0), transform, [&](const auto& m) {
+            return m.sweep(points(starts), points(ends), values(radii));
+        }));
     }
     const Doubles after = numbers(vertices_after, "vertices_after", 3);
-    return hits_of(ask(mesh, starts.shape(0), transform, [&](const auto& m) {
+    return hits_of(run_queries(mesh, starts.shape(0), transform, [&](const auto& m) {
         return m.sweep_moving(points(starts), points(ends), values(radii), points(after));
     }));
 }

@@ -28,7 +28,7 @@ py::object result(const char* name) { return py::module_::import("ricochet._resu
 // Particles.
 
 py::object particles_of(const Handle& handle) {
-    const std::shared_ptr<LentParticles> lent = handle.lend();
+    const std::shared_ptr<LentParticles> lent = handle.share_particles();
     const Particles& p = *lent->shown;
     const std::size_t n = p.size();
     const auto flags = [&](const std::vector<std::uint8_t>& list) { return lent_flags(list.data(), n, lent); };
@@ -297,7 +297,7 @@ int traverse(PyObject* object, visitproc visit, void* arg) {
 }
 
 int clear(PyObject* object) {
-    if (const Handle* const handle = handle_in(object)) let_go_of_functions(handle->forces());
+    if (const Handle* const handle = handle_in(object)) release_functions(handle->forces());
     return 0;
 }
 

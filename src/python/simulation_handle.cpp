@@ -205,7 +205,7 @@ void SimulationHandle::keep_lent() {
     lent_.reset();
 }
 
-std::shared_ptr<LentParticles> SimulationHandle::lend() const {
+std::shared_ptr<LentParticles> SimulationHandle::share_particles() const {
     const Turn turn(*this);
     std::shared_ptr<LentParticles> lent = lent_.lock();
     if (!lent) {

@@ -58,7 +58,7 @@ public:
     /// a second. An exception of progress also ends the call.
     void advance(std::uint64_t count, const py::object& progress);
 
-    [[nodiscard]] std::shared_ptr<LentParticles> lend() const;
+    [[nodiscard]] std::shared_ptr<LentParticles> share_particles() const;
     /// Returns the contacts since the last call. Throws InputError if keeps_contacts is false.
     [[nodiscard]] std::vector<ContactRecord> take_contacts();
 
@@ -113,7 +113,7 @@ private:
 /// Visits the functions of forces for Python's garbage collector. A force keeps its function alive, and the function
 /// may keep the simulation alive. This would be an undetected cycle.
 [[nodiscard]] int visit_functions(const UserForces& forces, visitproc visit, void* arg);
-void let_go_of_functions(const UserForces& forces);
+void release_functions(const UserForces& forces);
 void bind_picture(py::class_<SimulationHandle>& type);
 
 }  // namespace ricochet::python

@@ -21,8 +21,8 @@ std::optional<Vec3> vector_field(const VtkPolyData& frame, const char* name) {
 
 }  // namespace
 
-CameraPosition camera_place(const CameraDescription& camera, const Vec3& up, const FrameTree* frames,
-                            const Simulation& simulation) {
+CameraPosition current_camera_position(const CameraDescription& camera, const Vec3& up, const FrameTree* frames,
+                                       const Simulation& simulation) {
     const double time = simulation.time();
     CameraPosition camera_position{camera.path ? camera.path->value(time) : camera.position,
                                    camera.target_path ? camera.target_path->value(time) : camera.target, up};

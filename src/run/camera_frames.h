@@ -20,8 +20,8 @@ struct CameraPosition {
 
 /// Returns the camera's position and orientation at the simulation's time.
 /// frames: reference frames of the scene; may be null if the camera is not attached to a frame.
-[[nodiscard]] CameraPosition camera_place(const CameraDescription& camera, const Vec3& up, const FrameTree* frames,
-                                          const Simulation& simulation);
+[[nodiscard]] CameraPosition current_camera_position(const CameraDescription& camera, const Vec3& up,
+                                                     const FrameTree* frames, const Simulation& simulation);
 
 /// Adds the camera to a frame of particles as the fields camera_position, camera_target and camera_up.
 void add_camera(VtkPolyData& frame, const CameraPosition& camera_position);

@@ -211,7 +211,7 @@ int open_marker(const std::filesystem::path& folder) {
     return descriptor;
 }
 
-bool holds_other_text(int descriptor) {
+bool has_foreign_text(int descriptor) {
     std::array<char, kMarkerText.size()> start{};
     const ssize_t count = ::pread(descriptor, start.data(), start.size(), 0);
     if (count <= 0) return count < 0;  // an empty marker is accepted, because another process may still be writing it
@@ -236,10 +236,10 @@ void lock_marker(int descriptor, const std::filesystem::path& folder, int how) {
     throw RunError(fmt::format("{}: another run is writing into this folder", folder.string()));
 }
 
-void take_marker(int descriptor, const std::filesystem::path& folder) {
+void claim_marker(int descriptor, const std::filesystem::path& folder) {
     const std::filesystem::path marker = folder / kRunMarkerFile;
     lock_marker(descriptor, folder, LOCK_EX);
-    if (holds_other_text(descriptor)) {
+    if (has_foreign_text(descriptor)) {
         throw InputError(
             fmt::format("{}: not a marker that ricochet wrote; choose another output folder", marker.string()));
     }
@@ -273,7 +273,7 @@ OutputDirectory::OutputDirectory(std::filesystem::path path, Earlier earlier) : 
     make_folder(path_);
     marker_ = open_marker(path_);
     try {
-        earlier == Earlier::join ? lock_marker(marker_, path_, LOCK_SH) : take_marker(marker_, path_);
+        earlier == Earlier::join ? lock_marker(marker_, path_, LOCK_SH) : claim_marker(marker_, path_);
         if (earlier == Earlier::remove) remove_files(path_, [](const std::string& name) { return is_run_file(name); });
     } catch (...) {
         ::close(marker_);
@@ -377,7 +377,7 @@ RunFolder open_run_folder(const std::filesystem::path& path) {
     return folder;
 }
 
-bool are_behind(const RunFolder& folder, double time) {
+bool has_incomplete_totals(const RunFolder& folder, double time) {
     if (folder.frames.empty() || folder.frames.back().step == 0) return false;
     // The last step of a run can be shorter than the time step.
     const auto steps = static_cast<double>(folder.frames.back().step - 1);

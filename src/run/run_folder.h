@@ -153,6 +153,6 @@ void require_own_file(const std::filesystem::path& file);
 
 /// Returns true if a collider's totals end before the last frame, as happens if the run was killed.
 /// time: end of the totals, in s.
-[[nodiscard]] bool are_behind(const RunFolder& folder, double time);
+[[nodiscard]] bool has_incomplete_totals(const RunFolder& folder, double time);
 
 }  // namespace ricochet

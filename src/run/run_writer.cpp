@@ -93,7 +93,7 @@ void fill_run_frame(VtkPolyData& frame, const RunInfo& info, const Simulation& s
         add_springs(frame, simulation.particles(), simulation.springs(), simulation.spring_faces());
     }
     if (info.camera && info.camera->moves()) {
-        add_camera(frame, camera_place(*info.camera, info.up, info.camera->frames.get(), simulation));
+        add_camera(frame, current_camera_position(*info.camera, info.up, info.camera->frames.get(), simulation));
     }
 }
 

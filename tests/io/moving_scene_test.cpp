@@ -179,7 +179,8 @@ TEST(MovingScene, CameraInAScaledFrameFollowsItsPoints) {
                                          "s.json");
     Simulation simulation(std::move(scene.setup));
     simulation.advance(simulation.step_count());
-    const CameraPosition place = camera_place(*scene.camera, {0, 0, 1}, scene.camera->frames.get(), simulation);
+    const CameraPosition place =
+        current_camera_position(*scene.camera, {0, 0, 1}, scene.camera->frames.get(), simulation);
     EXPECT_LT(length(place.position - Vec3(2, 1, 1)), 1e-15);
     EXPECT_LT(length(place.target - Vec3(2, 0, 1)), 1e-15);
 }

@@ -53,10 +53,10 @@ TEST(PictureScene, CameraFollowsItsPathInItsFrame) {
     ASSERT_TRUE(scene.camera && scene.camera->moves());
     Simulation simulation(std::move(scene.setup));
     const Vec3 up{0, 0, 1};
-    CameraPosition place = camera_place(*scene.camera, up, scene.camera->frames.get(), simulation);
+    CameraPosition place = current_camera_position(*scene.camera, up, scene.camera->frames.get(), simulation);
     EXPECT_LT(length(place.position - Vec3(4, 0, 0)), 1e-12);
     simulation.advance(simulation.step_count());
-    place = camera_place(*scene.camera, up, scene.camera->frames.get(), simulation);
+    place = current_camera_position(*scene.camera, up, scene.camera->frames.get(), simulation);
     EXPECT_LT(length(place.position - Vec3(0, 6, 1)), 1e-9);
     EXPECT_LT(length(place.target - Vec3(0, 1, 0)), 1e-9);
     VtkPolyData frame;

@@ -260,7 +260,7 @@ TriangleSums write_triangles(const std::filesystem::path& path, const RunFolder&
         TriangleRows(data, number, info == nullptr ? file.stem().string() : info->name,
                      info == nullptr ? "" : info->type)
             .write(table, sums.sizes);
-        if (are_behind(folder, data.time)) sums.end = std::min(sums.end.value_or(data.time), data.time);
+        if (has_incomplete_totals(folder, data.time)) sums.end = std::min(sums.end.value_or(data.time), data.time);
     }
     table.commit();
     return sums;

@@ -207,7 +207,7 @@ TEST_P(ManyBounces, LeaveEveryParticleOnItsSide) {
 // In one case, points accumulate in a gap of a third of a degree, where friction stops them. In another case they
 // accumulate beside a vertex at the origin, where coordinates can be arbitrarily small. Each of these cases once took
 // minutes.
-TEST(ManyBouncesOfOneCase, EndIfPointsAccumulate) {
+TEST(ManyBouncesOfOneCaseLong, EndIfPointsAccumulate) {
     if (test::kSanitized) GTEST_SKIP() << "some minutes in such a build";
     const std::array<std::pair<const char*, std::uint64_t>, 3> cases{
         {{"flat", 2'000'029}, {"wedge", 11'000'000}, {"box", 498}}};

@@ -59,9 +59,9 @@ SimulationSetup flung_needle(const TriangleMesh& mesh, double far, double restit
 
 TEST(ParticlesInTheTipOfANeedle, StayInItOnAnyDisplacement) {
     const TriangleMesh mesh = needle(20.0);
-    for (const double far : {10.0, 1e3, 1e5}) {
-        for (const double restitution : {0.0, 0.1, 0.2, 0.7, 1.0}) {
-            for (const double time_step : {1.0 / 30.0, 1.0 / 60.0}) {
+    for (const double far : test::chosen_cases({10.0, 1e3, 1e5}, 2)) {
+        for (const double restitution : test::chosen_cases({0.0, 0.1, 0.2, 0.7, 1.0}, 2)) {
+            for (const double time_step : test::chosen_cases({1.0 / 30.0, 1.0 / 60.0}, 2)) {
                 SCOPED_TRACE(std::to_string(far) + " " + std::to_string(restitution) + " " + std::to_string(time_step));
                 auto setup = flung_needle(mesh, far, restitution, time_step);
                 for (const double speed : {5.0, 40.0}) {
@@ -168,8 +168,8 @@ SimulationSetup pushed_needle(const TriangleMesh& mesh, JointKind joint, double 
 TEST(ParticlesInABody, StayInIt) {
     const TriangleMesh mesh = needle(6.0);
     for (const JointKind joint : {JointKind::free, JointKind::hinge, JointKind::slider}) {
-        for (const double far : {1e3, 1e5}) {
-            for (const double restitution : {0.0, 0.2, 0.5, 1.0}) {
+        for (const double far : test::chosen_cases({1e3, 1e5}, 2)) {
+            for (const double restitution : test::chosen_cases({0.2, 0.0, 1.0, 0.5}, 2)) {
                 SCOPED_TRACE(std::to_string(static_cast<int>(joint)) + " " + std::to_string(far) + " " +
                              std::to_string(restitution));
                 Simulation simulation(pushed_needle(mesh, joint, far, restitution));

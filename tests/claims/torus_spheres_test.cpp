@@ -79,10 +79,10 @@ Filling filling_of(double friction, double restitution, double largest) {
 }
 
 TEST(SpheresInATorus, LoseNoTimeAndCostAtMostThreeTimesAsMuchAsPoints) {
-    for (const double restitution : {0.0, 0.3, 0.7, 0.95}) {
+    for (const double restitution : test::chosen_cases({0.0, 0.3, 0.7, 0.95}, 2)) {
         const SimulationStatistics points = run(filling_of(0.0, restitution, 0.0));
         EXPECT_EQ(points.unsimulated_time, 0.0) << "points, restitution " << restitution;
-        for (const double friction : {0.0, 0.1, 0.3, 1.0}) {
+        for (const double friction : test::chosen_cases({0.3, 0.0, 1.0, 0.1}, 2)) {
             for (const double largest : {0.015, 0.05}) {
                 SCOPED_TRACE("restitution " + std::to_string(restitution) + ", friction " + std::to_string(friction) +
                              ", radii up to " + std::to_string(largest));

@@ -40,7 +40,7 @@ TEST(NewCommand, WritesRunnableScenesOfEveryTemplateForClosedAndOpenMeshes) {
             ASSERT_EQ(made.exit_code, 0) << made.errors;
             EXPECT_EQ(made.errors, "");
             EXPECT_NE(text_of(scene).find("\"file\": \"" + mesh + "\""), std::string::npos) << "not relative";
-            const std::string fewer = kind == "gas" ? "emitters[0].burst=500" : "emitters[0].rate=300";
+            const std::string fewer = kind == "gas" ? "emitters[0].burst=200" : "emitters[0].rate=100";
             const auto run = test::run_ricochet(
                 {"run", scene, "--output", scene + "_run", "--set", "output.every=100", "--set", fewer});
             ASSERT_EQ(run.exit_code, 0) << run.errors;
@@ -122,7 +122,8 @@ TEST(NewCommand, FitsAMeshOfAnySizeAndPosition) {
         const auto made = test::run_ricochet(
             {"new", folder.write("m.obj", mesh), "--output", scene, "--template", "debris", "--force"});
         ASSERT_EQ(made.exit_code, 0) << made.errors;
-        const auto run = test::run_ricochet({"run", scene, "--output", scene + "_run", "--set", "output.every=100"});
+        const auto run = test::run_ricochet(
+            {"run", scene, "--output", scene + "_run", "--set", "output.every=100", "--set", "emitters[0].rate=300"});
         EXPECT_EQ(run.exit_code, 0) << run.errors;
         EXPECT_EQ(run.output.find(", 0 contacts"), std::string::npos) << run.output;
     }

@@ -10,6 +10,7 @@
 #include <optional>
 #include <ostream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -138,10 +139,12 @@ bool takes(const SimulationSetup& setup, FarRock kind) {
     return !setup.options.particle_contacts && setup.springs.empty() && setup.particles_forces.empty() && !setup.heat;
 }
 
+/// Runs a scene with each kind of rock that it supports in a long run, otherwise with one of them. first: selects it.
 template <class Make>
-void expect_same_bits_beside_a_far_rock(const Make& make) {
+void expect_same_bits_beside_a_far_rock(const Make& make, std::size_t first) {
     std::optional<Bits> alone;
-    for (const FarRock kind : kFarRocks) {
+    for (std::size_t k = 0; k < kFarRocks.size() && (!alone || test::is_long_run()); ++k) {
+        const FarRock kind = kFarRocks[(first + k) % kFarRocks.size()];
         SimulationSetup setup = make();
         if (!takes(setup, kind)) continue;
         if (!alone) {
@@ -162,7 +165,8 @@ TEST_P(ShippedSceneBesideAFarRock, EndsInTheSameBits) {
     const ShippedScene scene = GetParam();
     if (*scene.duration != '\0') overrides.push_back(std::string("simulation.duration=") + scene.duration);
     expect_same_bits_beside_a_far_rock(
-        [&] { return read_scene(kScenes / (std::string(scene.name) + ".json"), overrides).setup; });
+        [&] { return read_scene(kScenes / (std::string(scene.name) + ".json"), overrides).setup; },
+        std::string_view(scene.name).size());
 }
 
 std::string name_of_scene(const ::testing::TestParamInfo<ShippedScene>& info) {
@@ -194,7 +198,7 @@ TEST(RandomSceneBesideAFarRock, EndsInTheSameBits) {
     const int count = test::scaled(test::is_long_run() ? 1000 : 30);
     for (int number = 0; number < count; ++number) {
         SCOPED_TRACE("random scene " + std::to_string(number));
-        expect_same_bits_beside_a_far_rock([&] { return random_setup(number); });
+        expect_same_bits_beside_a_far_rock([&] { return random_setup(number); }, static_cast<std::size_t>(number));
     }
 }
 
@@ -216,7 +220,7 @@ SimulationSetup pile() {
 TEST(PileBesideAFarRock, FallsAsleepInTheSameStep) {
     const Bits alone = bits_of(pile());
     EXPECT_EQ(alone.asleep, 4U);
-    expect_same_bits_beside_a_far_rock(pile);
+    for (std::size_t first = 0; first < kFarRocks.size(); ++first) expect_same_bits_beside_a_far_rock(pile, first);
 }
 
 /// Returns the energy per unit mass of the first particle, in m^2/s^2. Its floor is at the height 0.

@@ -4,7 +4,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdlib>
+#include <initializer_list>
+#include <vector>
 
 namespace ricochet::test {
 
@@ -40,5 +43,13 @@ inline constexpr bool kOptimised = false;
 
 /// Returns the factor on the number of cases. It is `in_a_long_run` in a long run, otherwise 1.
 [[nodiscard]] inline int case_factor(int in_a_long_run) noexcept { return is_long_run() ? in_a_long_run : 1; }
+
+/// Returns the cases that run: all of them in a long run, otherwise every `stride`-th, the first included.
+template <class Case>
+[[nodiscard]] std::vector<Case> chosen_cases(std::initializer_list<Case> all, std::size_t stride) {
+    std::vector<Case> chosen;
+    for (std::size_t k = 0; k < all.size(); k += is_long_run() ? 1 : stride) chosen.push_back(all.begin()[k]);
+    return chosen;
+}
 
 }  // namespace ricochet::test

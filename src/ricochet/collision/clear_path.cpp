@@ -1,15 +1,49 @@
 #include "ricochet/collision/clear_path.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "ricochet/collision/narrow_phase.h"
 
 namespace ricochet {
 
-double room_beside_triangles(const CollisionWorld& world, const Vec3& center, double radius) {
+namespace {
+
+/// Factor on distances that covers the rounding of closest_point_on_triangle() and of the steps inside a clear ball.
+/// Local: an error bound of this arithmetic.
+constexpr double kDistanceRounding = 1.0 - 0x1p-40;
+
+/// Part of the distance to the nearest known triangle within which a search goes on. More: larger balls. Less: fewer
+/// triangles are tested. Local, because only the cost depends on it.
+constexpr double kSearchedPart = 0.8;
+
+/// Returns a lower bound, in m^2, on the squared distance of a point from a triangle: the distance from its box.
+double squared_distance_from_box(const Vec3& p, const CollisionWorld::Corners& triangle) {
+    const auto& [a, b, c] = triangle;
+    const Vec3 outside = max(max(min(a, min(b, c)) - p, p - max(a, max(b, c))), Vec3{});
+    return length_squared(outside);
+}
+
+}  // namespace
+
+ClearBall find_clear_ball(const CollisionWorld& world, const Vec3& center, double within) {
+    double radius = kSearchedPart * within;
+    world.bvh_for(0.0).query_point(center, radius, [&](std::uint32_t triangle) {
+        const CollisionWorld::Corners corners = world.corners_of_triangle(triangle);
+        if (squared_distance_from_box(center, corners) >= radius * radius) return radius;
+        const auto& [a, b, c] = corners;
+        radius =
+            std::min(radius, kSearchedPart * std::sqrt(closest_point_on_triangle(center, a, b, c).distance_squared));
+        return radius;
+    });
+    return {center, kDistanceRounding * radius};
+}
+
+double room_beside_triangles(const CollisionWorld& world, const Vec3& center, double radius, const ClearBall& clear) {
     if (world.triangles().empty()) return std::numeric_limits<double>::infinity();
-    return world.distance_field().lower_bound(center) - radius - query_slack(max_abs(center), radius);
+    const double bound = std::max(world.distance_field().lower_bound(center), clear.bound_at(center));
+    return bound - radius - query_slack(max_abs(center), radius);
 }
 
 bool is_path_clear(const CollisionWorld& world, const Path& path, double radius, double room) {

@@ -31,19 +31,19 @@ ForceInput moved(const ForceInput& state, const Vec3& position, const Vec3& velo
     return result;
 }
 
-PhaseState midpoint_step(const ForceField& forces, const ForceInput& state, double h) {
-    const Vec3 a0 = forces.acceleration(state);
+// Steps of h seconds. They take the acceleration at their start, in m/s^2, because flights need it too.
+
+PhaseState midpoint_step(const ForceField& forces, const ForceInput& state, const Vec3& a0, double h) {
     const Vec3 v_mid = state.velocity + (0.5 * h) * a0;
     const Vec3 a_mid =
         forces.acceleration(moved(state, state.position + (0.5 * h) * state.velocity, v_mid, state.time + 0.5 * h));
     return {state.position + h * v_mid, state.velocity + h * a_mid};
 }
 
-PhaseState rk4_step(const ForceField& forces, const ForceInput& state, double h) {
+PhaseState rk4_step(const ForceField& forces, const ForceInput& state, const Vec3& a1, double h) {
     const Vec3& x = state.position;
     const Vec3& v = state.velocity;
     const double half = 0.5 * h;
-    const Vec3 a1 = forces.acceleration(state);
     const Vec3 v2 = v + half * a1;
     const Vec3 a2 = forces.acceleration(moved(state, x + half * v, v2, state.time + half));
     const Vec3 v3 = v + half * a2;
@@ -53,31 +53,38 @@ PhaseState rk4_step(const ForceField& forces, const ForceInput& state, double h)
     return {x + (h / 6.0) * (v + 2.0 * (v2 + v3) + v4), v + (h / 6.0) * (a1 + 2.0 * (a2 + a3) + a4)};
 }
 
-PhaseState verlet_step(const ForceField& forces, const ForceInput& state, double h) {
-    const Vec3 a0 = forces.acceleration(state);
+PhaseState verlet_step(const ForceField& forces, const ForceInput& state, const Vec3& a0, double h) {
     const Vec3 x = state.position + h * state.velocity + (0.5 * h * h) * a0;
     const Vec3 a1 = forces.acceleration(moved(state, x, state.velocity + h * a0, state.time + h));
     return {x, state.velocity + (0.5 * h) * (a0 + a1)};
 }
 
-PhaseState one_step(IntegratorKind kind, const ForceField& forces, const ForceInput& state, double h) {
+PhaseState one_step(IntegratorKind kind, const ForceField& forces, const ForceInput& state, const Vec3& acceleration,
+                    double h) {
     switch (kind) {
         case IntegratorKind::midpoint:
-            return midpoint_step(forces, state, h);
+            return midpoint_step(forces, state, acceleration, h);
         case IntegratorKind::velocity_verlet:
         case IntegratorKind::ballistic:
-            return verlet_step(forces, state, h);
+            return verlet_step(forces, state, acceleration, h);
         case IntegratorKind::dormand_prince:
             return dormand_prince_step(forces, state, h).end;
         default:
-            return rk4_step(forces, state, h);
+            return rk4_step(forces, state, acceleration, h);
     }
 }
 
+/// Returns the state after a shorter step from the same start. The acceleration of a planned flight differs in its last
+/// bits from that of its start, so it is not used.
+PhaseState part_of_step(IntegratorKind kind, const ForceField& forces, const ForceInput& start, double h) {
+    return one_step(kind, forces, start, forces.acceleration(start), h);
+}
+
 Flight one_step_flight(IntegratorKind kind, const ForceField& forces, const ForceInput& state, double h) {
-    const PhaseState end = one_step(kind, forces, state, h);
+    const Vec3 a = forces.acceleration(state);
+    const PhaseState end = one_step(kind, forces, state, a, h);
     const Path path = hermite_path(state.position, state.velocity, end.position, end.velocity, h);
-    return {path, forces.acceleration(state), 0.0, state, end.velocity, 0.0, path.degree >= 3};
+    return {path, a, 0.0, state, end.velocity, 0.0, path.degree >= 3};
 }
 
 Flight straight_flight(const ForceField& forces, const ForceInput& state, double h) {
@@ -87,7 +94,7 @@ Flight straight_flight(const ForceField& forces, const ForceInput& state, double
 
 Flight verlet_flight(const ForceField& forces, const ForceInput& state, double h) {
     const Vec3 a = forces.acceleration(state);
-    const Vec3 end_velocity = verlet_step(forces, state, h).velocity;
+    const Vec3 end_velocity = verlet_step(forces, state, a, h).velocity;
     return {parabola_path(state.position, state.velocity, a, h), a, 0.0, state, end_velocity, 0.0, true};
 }
 
@@ -206,7 +213,7 @@ Path look_ahead_path(const Integrator& integrator, const Flight& flight, double 
 
 PhaseState state_at(const Integrator& integrator, const ForceField& forces, const Flight& flight, double s) {
     if (s >= flight.path.duration) return {flight.path.end, flight.end_velocity};
-    if (flight.path.degree >= 3 && flight.steps_again) return one_step(integrator.kind, forces, flight.start, s);
+    if (flight.path.degree >= 3 && flight.steps_again) return part_of_step(integrator.kind, forces, flight.start, s);
     return {flight.path.position(s), velocity_at(integrator, forces, flight, s)};
 }
 
@@ -214,7 +221,7 @@ Vec3 velocity_at(const Integrator& integrator, const ForceField& forces, const F
     if (s >= flight.path.duration) return flight.end_velocity;
     if (!flight.steps_again) return flight.path.velocity(s);
     if (integrator.kind == IntegratorKind::forward_euler) return flight.start.velocity + s * flight.acceleration;
-    return one_step(integrator.kind, forces, flight.start, s).velocity;
+    return part_of_step(integrator.kind, forces, flight.start, s).velocity;
 }
 
 }  // namespace ricochet

@@ -1,6 +1,5 @@
 #include "ricochet/response/clear_flight.h"
 
-#include "ricochet/collision/clear_path.h"
 #include "ricochet/response/impact_resolver.h"
 #include "ricochet/response/motion_log.h"
 
@@ -11,6 +10,30 @@ namespace {
 bool may_fly_clear(const ResponseRules& rules, const MovingParticle& particle) {
     return rules.bodies.empty() && rules.world.culls() && !rules.forces.is_uniform() && particle.beyond == 0.0 &&
            particle.contact == ContactState{} && is_finite(particle.state.position);
+}
+
+/// Number of steps for which a search looks for free space. More: a search costs more where space is free. Fewer: more
+/// searches. Local, because only the cost depends on it.
+constexpr double kSearchedSteps = 40.0;
+
+/// Number of steps after which a search is repeated that has found too little free space. Fewer: a particle that flies
+/// along a wall pays for more searches in vain. More: one that leaves a wall pays for more contact queries. Local,
+/// because only the cost depends on it.
+constexpr double kStepsBetweenSearches = 6.0;
+
+/// Returns the room beside the triangles, in m, if it exceeds the estimated length of a step, in m; otherwise 0.
+/// Searches for free space if the known one is used up.
+double room_for(const CollisionWorld& world, MovingParticle& particle, double step) {
+    const Vec3& position = particle.state.position;
+    const double radius = particle.state.radius;
+    double room = room_beside_triangles(world, position, radius, particle.clear);
+    if (room > step) return room;
+    ClearBall& clear = particle.clear;
+    const bool is_searched = clear.radius > 0.0 && length(position - clear.center) < kStepsBetweenSearches * step;
+    if (is_searched) return 0.0;
+    clear = find_clear_ball(world, position, radius + kSearchedSteps * step);
+    room = room_beside_triangles(world, position, radius, clear);
+    return room > step ? room : 0.0;
 }
 
 /// Records the flight in the lists that the caller has asked for. before: the particle at the start.
@@ -35,9 +58,8 @@ std::optional<MoveOutcome> fly_clear(const ResponseRules& rules, MovingParticle&
                                      MoveScratch& scratch) {
     if (!may_fly_clear(rules, particle)) return std::nullopt;
     ForceInput& state = particle.state;
-    const double room = room_beside_triangles(rules.world, state.position, state.radius);
-    // Saves the flight of a particle that is too near anyway.
-    if (!(duration * length(state.velocity) < room)) return std::nullopt;
+    const double room = room_for(rules.world, particle, duration * length(state.velocity));
+    if (!(room > 0.0)) return std::nullopt;
     const Flight flight = first_flight(rules, particle, duration);
     if (flight.path.duration != duration || !can_be_followed(flight.path)) return std::nullopt;
     if (!is_path_clear(rules.world, flight.path, state.radius, room)) return std::nullopt;

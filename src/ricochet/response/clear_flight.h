@@ -9,9 +9,9 @@
 namespace ricochet {
 
 /// Moves a particle over a whole step of `duration`, in s, if its path certainly stays away from all surfaces. The
-/// result has the same bits as with a contact query. Returns std::nullopt, and changes nothing, if the path may come
-/// near a surface. Also if a look-ahead would save more: under forces that are uniform, it finds many free steps with
-/// one query.
+/// result has the same bits as with a contact query. If the path may come near a surface, returns std::nullopt and
+/// changes nothing except MovingParticle::clear. It does the same under uniform forces, for which a look-ahead finds
+/// many free steps with one query.
 [[nodiscard]] std::optional<MoveOutcome> fly_clear(const ResponseRules& rules, MovingParticle& particle,
                                                    double duration, MoveScratch& scratch);
 

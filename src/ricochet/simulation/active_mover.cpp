@@ -95,6 +95,7 @@ void schedule_query(const MoverParts& parts, std::size_t i, const MovingParticle
         parts.schedule.forget(i);
     } else {
         FreeFlightForecast forecast;
+        forecast.clear = moved.clear;
         if (outcome.free_for > 0.0) {
             const Particles& particles = parts.store.particles();
             forecast.free_until = std::min(until + outcome.free_for, particles.birth_time[i] + particles.lifetime[i]);
@@ -197,6 +198,7 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
 MovingParticle ActiveMover::load(std::size_t i, double start) {
     MovingParticle particle = parts_.store.load(i, start, !parts_.schedule.is_without_contact(i));
     particle.candidates = parts_.schedule.candidates(i);
+    particle.clear = parts_.schedule.clear(i);
     if (i < bounces_.size()) particle.bounces_before = bounces_[i];
     if (parts_.observers.offspring != nullptr) {
         particle.shatter_impulse = parts_.observers.offspring->shatter_impulse(parts_.store.particles(), i);

@@ -76,7 +76,7 @@ struct Population::Arrival {
 Population::Population(ParticleStore store, const AccelerationSwitches& acceleration, double particle_bytes,
                        const PopulationParts& parts)
     : store_(std::move(store)),
-      schedule_(parts.clock),
+      schedule_(parts.clock, !parts.response.rules().forces.is_uniform()),
       flights_(store_, schedule_, parts.response.rules().forces, parts.options.integrator, parts.modules.observers()),
       acceleration_(acceleration),
       memory_(particle_bytes),

@@ -17,7 +17,7 @@ void QuerySchedule::set_flying(std::size_t i, const FreeFlightForecast& forecast
     const std::uint64_t step =
         forecast.free_until > now ? clock_.last_step_before(forecast.free_until, kLeftAlone - 2) : 0;
     const auto next = static_cast<std::uint32_t>(step + 1);
-    set(i, next, candidates_for(next, forecast));
+    set(i, next, candidates_for(next, forecast), forecast.clear);
 }
 
 // Returns the candidates of a forecast if they are complete for the whole step of the query. A last step that is not
@@ -32,16 +32,19 @@ ContactCandidates QuerySchedule::candidates_for(std::uint32_t next, const FreeFl
 void QuerySchedule::append(bool is_left_alone) {
     next_.push_back(is_left_alone ? kLeftAlone : kUnknown);
     candidates_.emplace_back();
+    if (keeps_clear_balls_) clear_.emplace_back();
 }
 
 void QuerySchedule::reserve(std::size_t more) {
     grow_capacity_by(next_, more);
     grow_capacity_by(candidates_, more);
+    if (keeps_clear_balls_) grow_capacity_by(clear_, more);
 }
 
 void QuerySchedule::compact(const std::vector<std::uint8_t>& keep) {
     keep_marked(next_, keep);
     keep_marked(candidates_, keep);
+    if (keeps_clear_balls_) keep_marked(clear_, keep);
 }
 
 void QuerySchedule::rearrange(const std::vector<std::size_t>& from) {
@@ -54,11 +57,13 @@ void QuerySchedule::rearrange(const std::vector<std::size_t>& from) {
     }
     next_ = std::move(next);
     candidates_ = std::move(candidates);
+    clear_.assign(keeps_clear_balls_ ? from.size() : 0, ClearBall{});
 }
 
 void QuerySchedule::reset(std::size_t count) {
     next_.assign(count, kUnknown);
     candidates_.assign(count, ContactCandidates{});
+    clear_.assign(keeps_clear_balls_ ? count : 0, ClearBall{});
 }
 
 }  // namespace ricochet

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "ricochet/collision/clear_path.h"
 #include "ricochet/collision/contact.h"
 #include "ricochet/core/algorithms.h"
 #include "ricochet/core/tolerances.h"
@@ -72,6 +73,7 @@ struct FreeFlightForecast {
     /// S, the particle certainly hits nothing before this time; not known if in the past.
     double free_until = 0.0;
     double candidates_until = 0.0;      ///< s, only the candidates come near the particle's path before this time
+    ClearBall clear = {};               ///< free space around the particle, if it is known
     ContactCandidates candidates = {};  ///< valid only if candidates_until is in the future
 };
 
@@ -81,7 +83,10 @@ struct FreeFlightForecast {
 class QuerySchedule {
 public:
     /// clock must outlive the object.
-    explicit QuerySchedule(const StepClock& clock) : clock_(clock) {}
+    /// clock must outlive it. keeps_clear_balls: clear() returns the balls of forecasts. Steps under uniform forces do
+    /// not use them.
+    explicit QuerySchedule(const StepClock& clock, bool keeps_clear_balls = false)
+        : clock_(clock), keeps_clear_balls_(keeps_clear_balls) {}
 
     /// Begins a step. The functions below then return the states of particles in this step.
     void begin_step(std::uint64_t step);
@@ -100,6 +105,9 @@ public:
     }
     /// Returns the triangles that come near the path in the next query, if they are known.
     [[nodiscard]] const ContactCandidates& candidates(std::size_t i) const { return candidates_[i]; }
+
+    /// Returns the free space that an earlier query has found around the particle; radius 0 if none is known.
+    [[nodiscard]] ClearBall clear(std::size_t i) const { return keeps_clear_balls_ ? clear_[i] : ClearBall{}; }
 
     /// Returns the number of particles of [begin, end) that need a query.
     [[nodiscard]] std::size_t count_active(std::size_t begin, std::size_t end) const {
@@ -130,8 +138,8 @@ public:
 
     /// The next three functions set the state of a particle after its move. Several threads may call them for different
     /// particles.
-    void leave_alone(std::size_t i) { set(i, kLeftAlone, {}); }
-    void forget(std::size_t i) { set(i, kUnknown, {}); }
+    void leave_alone(std::size_t i) { set(i, kLeftAlone, {}, {}); }
+    void forget(std::size_t i) { set(i, kUnknown, {}, {}); }
     void set_flying(std::size_t i, const FreeFlightForecast& forecast);
 
     /// Adds a particle that is unknown or left alone.
@@ -162,9 +170,10 @@ private:
 
     [[nodiscard]] static bool is_active(std::uint32_t next, std::uint32_t now) { return next <= now; }
     [[nodiscard]] static bool is_free(std::uint32_t next, std::uint32_t now) { return next + 1U > now + 1U; }
-    void set(std::size_t i, std::uint32_t next, const ContactCandidates& candidates) {
+    void set(std::size_t i, std::uint32_t next, const ContactCandidates& candidates, const ClearBall& clear) {
         next_[i] = next;
         candidates_[i] = candidates;
+        if (keeps_clear_balls_) clear_[i] = clear;
     }
     [[nodiscard]] ContactCandidates candidates_for(std::uint32_t next, const FreeFlightForecast& forecast) const;
 
@@ -173,6 +182,8 @@ private:
     std::uint32_t now_ = 1;  ///< one more than step_, limited to the range of numbers; real runs do not reach the limit
     std::vector<std::uint32_t> next_;
     std::vector<ContactCandidates> candidates_;
+    bool keeps_clear_balls_;
+    std::vector<ClearBall> clear_;  ///< one per particle if they are kept
 };
 
 }  // namespace ricochet

@@ -1,0 +1,113 @@
+#include "ricochet/collision/clear_path.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "collision/worlds.h"
+#include "ricochet/core/random.h"
+#include "support/counts.h"
+#include "support/mesh_distance.h"
+#include "support/simple_meshes.h"
+
+namespace ricochet {
+namespace RICOCHET_FILE {
+
+using testing::distance_from;
+using testing::mesh_collider;
+using testing::plane_collider;
+using testing::query;
+using testing::world_of;
+
+bool is_clear(const CollisionWorld& world, const Path& path, double radius) {
+    return is_path_clear(world, path, radius, room_beside_triangles(world, path.c[0], radius));
+}
+
+/// Returns a random path of degree 1, 2 or 3.
+Path random_path(RandomSequence& random) {
+    const Vec3 start = 3.0 * random.in_unit_ball();
+    const double size = random.uniform();
+    if (random.uniform() < 0.3) return line_path(start, size * random.in_unit_ball(), 1.0);
+    if (random.uniform() < 0.5) return parabola_path(start, size * random.in_unit_ball(), random.in_unit_ball(), 1.0);
+    return hermite_path(start, size * random.in_unit_ball(), start + size * random.in_unit_ball(),
+                        size * random.in_unit_ball(), 1.0);
+}
+
+TEST(ClearPath, ClearPathStaysAwayFromEveryTriangle) {
+    const TriangleMesh mesh = testing::sphere_mesh({0.2, 0, 0}, 1.0, 3);
+    CollisionWorld world = world_of(mesh_collider(mesh));
+    RandomSequence random(5, 0, 0);
+    int clear = 0;
+    for (int k = 0; k < test::scaled(2000); ++k) {
+        SCOPED_TRACE("case " + std::to_string(k));
+        const double radius = k % 2 == 0 ? 0.0 : 0.1 * random.uniform();
+        const Path path = random_path(random);
+        if (!is_clear(world, path, radius)) continue;
+        ++clear;
+        for (int s = 0; s <= 20; ++s) ASSERT_GT(distance_from(mesh, path.position(s / 20.0)), radius);
+        ContactScratch scratch;
+        world.prepare_radius(radius);
+        const ContactQueryResult found = query(world, scratch, path, radius);
+        EXPECT_FALSE(found.contact);
+        EXPECT_TRUE(found.near.is_free(path.c[0], path.end));
+    }
+    EXPECT_GT(clear, test::scaled(2000) / 10);
+}
+
+TEST(ClearBall, ContainsNoTriangleAndIsNearlyTheLargest) {
+    const TriangleMesh mesh = testing::sphere_mesh({0.2, 0, 0}, 1.0, 3);
+    const CollisionWorld world = world_of(mesh_collider(mesh));
+    RandomSequence random(6, 0, 0);
+    for (int k = 0; k < test::scaled(1000); ++k) {
+        SCOPED_TRACE("case " + std::to_string(k));
+        const Vec3 center = 2.0 * random.in_unit_ball();
+        const double within = 2.0 * random.uniform();
+        const double distance = distance_from(mesh, center);
+        const ClearBall ball = find_clear_ball(world, center, within);
+        EXPECT_LE(ball.radius, distance);
+        EXPECT_GE(ball.radius, 0.799 * std::min(within, distance));
+        const Vec3 p = center + (1.5 * ball.radius * random.uniform()) * random.unit_vector();
+        EXPECT_LE(ball.bound_at(p), distance_from(mesh, p));
+    }
+}
+
+TEST(ClearBall, ReplacesTheDistanceFieldWhereItKnowsMore) {
+    const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 3);
+    const CollisionWorld world = world_of(mesh_collider(mesh));
+    const Vec3 near{0.9, 0.0, 0.0};
+    EXPECT_LE(room_beside_triangles(world, near, 0.0), 0.0);
+    const ClearBall ball = find_clear_ball(world, near, 1.0);
+    EXPECT_GT(room_beside_triangles(world, near, 0.0, ball), 0.07);
+    EXPECT_GT(room_beside_triangles(world, near, 0.05, ball), 0.02);
+}
+
+TEST(ClearPath, PlanesAndShapesBoundThePath) {
+    Placement at_five;
+    at_five.position = {5, 0, 0};
+    CollisionWorld world =
+        world_of(plane_collider({0, 0, 0}, {0, 0, 1}), ColliderDescription{"ball", BallShape{1.0, at_five}, 0});
+    const Path along = line_path({0, 0, 1}, {1, 0, 0}, 1.0);
+    EXPECT_TRUE(is_clear(world, along, 0.5));
+    EXPECT_FALSE(is_clear(world, along, 1.0));
+    EXPECT_FALSE(is_clear(world, line_path({0, 0, 1}, {0, 0, -2}, 1.0), 0.0));
+    EXPECT_FALSE(is_clear(world, line_path({3, 0, 1}, {3, 0, 0}, 1.0), 0.5));
+}
+
+TEST(ClearPath, WorldWithoutSurfacesIsClearForAnyPath) {
+    const CollisionWorld world(std::vector<ColliderDescription>{});
+    EXPECT_TRUE(is_clear(world, line_path({0, 0, 0}, {1e6, 0, 0}, 10.0), 1.0));
+}
+
+// A path may return to its start, so its end alone says nothing.
+TEST(ClearPath, ClosedPathIsBoundedByItsControlPoints) {
+    const TriangleMesh wall = testing::floor_mesh(1.0, 8);
+    CollisionWorld world = world_of(mesh_collider(wall));
+    const Path path = parabola_path({0, 0, 1.0}, {0, 0, -6}, {0, 0, 12}, 1.0);
+    EXPECT_LT(length(path.end - path.c[0]), 1e-12);
+    EXPECT_FALSE(is_clear(world, path, 0.0));
+}
+
+}  // namespace RICOCHET_FILE
+}  // namespace ricochet

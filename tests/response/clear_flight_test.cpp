@@ -1,0 +1,106 @@
+#include "ricochet/response/clear_flight.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "collision/worlds.h"
+#include "ricochet/core/random.h"
+#include "ricochet/response/exact.h"
+#include "support/counts.h"
+#include "support/integrators.h"
+#include "support/simple_meshes.h"
+
+namespace ricochet {
+namespace RICOCHET_FILE {
+
+using testing::mesh_collider;
+
+/// A ball of triangles under gravity and drag.
+class Air {
+public:
+    explicit Air(IntegratorKind integrator) : world_(of_ball()) {
+        settings_.integrator = integrator;
+        std::vector<std::unique_ptr<Force>> forces;
+        forces.push_back(make_gravity({0, 0, -9.81}));
+        forces.push_back(make_linear_drag(0.3));
+        forces_ = ForceField(std::move(forces));
+    }
+
+    [[nodiscard]] ResponseRules rules() const { return {world_, bodies_, forces_, materials_, settings_}; }
+    CollisionWorld& world() { return world_; }
+
+private:
+    static std::vector<ColliderDescription> of_ball() { return {mesh_collider(testing::sphere_mesh({}, 1.0, 3))}; }
+
+    CollisionWorld world_;
+    MovingColliders bodies_{world_};
+    ForceField forces_;
+    std::vector<Material> materials_{Material{}};
+    ResponseSettings settings_;
+};
+
+MovingParticle random_particle(RandomSequence& random, double radius) {
+    MovingParticle particle;
+    particle.state = {3.0 * random.in_unit_ball(), 5.0 * random.in_unit_ball(), 1.0, radius, 0.0};
+    return particle;
+}
+
+class ClearFlight : public ::testing::TestWithParam<IntegratorKind> {};
+
+// Without culling every triangle is tested, and no flight counts as clear.
+TEST_P(ClearFlight, EndsInTheBitsOfAStepThatTestsEveryTriangle) {
+    Air air(GetParam());
+    air.world().prepare_radius(0.1);
+    RandomSequence random(9, 0, 0);
+    int clear = 0;
+    for (int k = 0; k < test::scaled(400); ++k) {
+        SCOPED_TRACE("case " + std::to_string(k));
+        const MovingParticle start = random_particle(random, k % 2 == 0 ? 0.0 : 0.1);
+        MoveScratch scratch;
+        scratch.record_segments = scratch.record_flown = scratch.record_motions = k % 3 == 0;
+        MovingParticle fast = start;
+        air.world().set_culling(true);
+        if (!fly_clear(air.rules(), fast, 0.02, scratch)) continue;
+        ++clear;
+        MovingParticle slow = start;
+        MoveScratch reference;
+        reference.record_segments = reference.record_flown = reference.record_motions = k % 3 == 0;
+        air.world().set_culling(false);
+        (void)ExactResponse(air.rules()).move(slow, 0.02, reference);
+        EXPECT_EQ(fast.state.position, slow.state.position);
+        EXPECT_EQ(fast.state.velocity, slow.state.velocity);
+        EXPECT_EQ(fast.state.time, slow.state.time);
+        EXPECT_EQ(fast.contact, slow.contact);
+        EXPECT_EQ(scratch.motions.size(), reference.motions.size());
+        EXPECT_EQ(scratch.flown.size(), reference.flown.size());
+        ASSERT_EQ(scratch.segments.empty(), reference.segments.empty());
+        if (scratch.segments.empty()) continue;
+        EXPECT_EQ(scratch.segments.back().to, reference.segments.back().to);
+        EXPECT_EQ(scratch.segments.front().from, reference.segments.front().from);
+    }
+    EXPECT_GT(clear, test::scaled(400) / 4);
+}
+
+INSTANTIATE_TEST_SUITE_P(By, ClearFlight, ::testing::ValuesIn(test::kAllIntegrators),
+                         [](const auto& info) { return std::string(name_of(info.param)); });
+
+TEST(ClearFlight, ParticleInContactOrNearASurfaceIsNotMoved) {
+    const Air air(IntegratorKind::midpoint);
+    MoveScratch scratch;
+    MovingParticle near;
+    near.state = {{0, 0, 1.001}, {1, 0, 0}, 1.0, 0.0, 0.0};
+    EXPECT_FALSE(fly_clear(air.rules(), near, 0.02, scratch));
+    EXPECT_EQ(near.state.time, 0.0);
+    MovingParticle touching;
+    touching.state = {{0, 0, 3}, {1, 0, 0}, 1.0, 0.0, 0.0};
+    touching.contact.count = 1;
+    EXPECT_FALSE(fly_clear(air.rules(), touching, 0.02, scratch));
+    EXPECT_EQ(touching.state.position, (Vec3{0, 0, 3}));
+}
+
+}  // namespace RICOCHET_FILE
+}  // namespace ricochet

@@ -89,7 +89,7 @@ TEST(ClearPath, PlanesAndShapesBoundThePath) {
     CollisionWorld world =
         world_of(plane_collider({0, 0, 0}, {0, 0, 1}), ColliderDescription{"ball", BallShape{1.0, at_five}, 0});
     const Path along = line_path({0, 0, 1}, {1, 0, 0}, 1.0);
-    EXPECT_TRUE(is_clear(world, along, 0.5));
+    EXPECT_TRUE(is_clear(world, along, 0.4));
     EXPECT_FALSE(is_clear(world, along, 1.0));
     EXPECT_FALSE(is_clear(world, line_path({0, 0, 1}, {0, 0, -2}, 1.0), 0.0));
     EXPECT_FALSE(is_clear(world, line_path({3, 0, 1}, {3, 0, 0}, 1.0), 0.5));

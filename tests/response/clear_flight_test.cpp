@@ -86,7 +86,7 @@ TEST_P(ClearFlight, EndsInTheBitsOfAStepThatTestsEveryTriangle) {
 }
 
 INSTANTIATE_TEST_SUITE_P(By, ClearFlight, ::testing::ValuesIn(test::kAllIntegrators),
-                         [](const auto& info) { return std::string(name_of(info.param)); });
+                         [](const auto& tested) { return std::string(name_of(tested.param)); });
 
 TEST(ClearFlight, ParticleInContactOrNearASurfaceIsNotMoved) {
     const Air air(IntegratorKind::midpoint);

@@ -40,6 +40,7 @@ void ImpactResolver::release(Contact& contact) const {
     }
 }
 
+// On a single surface: resolve(), try_single(), apply_bounce(), bounce() of contact_motion.h.
 bool ImpactResolver::reflect(std::span<const ContactSurface> surfaces, bool ends_substep) {
     const auto is_met = [&](const ContactSurface& surface) { return surfaces_.is_approached(surface); };
     if (std::none_of(surfaces.begin(), surfaces.end(), is_met)) return false;
@@ -92,6 +93,8 @@ bool ImpactResolver::try_single(std::span<const ContactSurface> surfaces, const 
     return true;
 }
 
+/// Applies bounce() relative to the surface's motion. Surfaces with random reflection and dynamic bodies have their own
+/// rules.
 void ImpactResolver::apply_bounce(const ContactSurface& surface, Rebound rebound) {
     const Material& material = surfaces_.material_of(surface.surface);
     const double approach = -surfaces_.separation_speed(surface);

@@ -98,7 +98,7 @@ std::optional<Contact> follow_flight(ParticleStep& step, const Flight& flight, c
     }
     const ContactQuery query{path, state.radius, look_ahead, candidates};
     ContactQueryResult found = find_first_contact(step.geometry(), query, step.scratch().contacts);
-    finish(move_certified(step, query, found));
+    finish(move_certified(step, query, found));  // a surface that blocks the path can replace found.contact
     if (look_ahead != nullptr && !found.contact && state.position == path.end) {
         MoveOutcome& outcome = step.outcome();
         outcome.free_for = std::max(0.0, found.ahead.free_until - path.duration);

@@ -173,7 +173,8 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     const RecordedMotion before{particle.state.position, particle.state.velocity, particle.spin};
     const bool wants_deviation = as_planned && coupled().wants_deviation_of(i);
     scratch.record_flown = wants_deviation || parts_.observers.passages != nullptr;
-    const MoveOutcome outcome = response_.move(particle, duration, scratch);  // `exact`: ParticleMover::run()
+    // The response `exact` tries fly_clear(), then calls ParticleMover::run().
+    const MoveOutcome outcome = response_.move(particle, duration, scratch);
     if (wants_deviation)
         record_deviation(i, particle, outcome, scratch.flown, impulse_of(std::span(scratch.hits).subspan(first_hit)));
     if (parts_.observers.meter != nullptr) {

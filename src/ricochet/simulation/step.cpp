@@ -64,7 +64,8 @@ void Simulation::Impl::move_substep(const ParticleRange& generation, const TimeS
     if (options.response == ResponseKind::rollback && options.rollback.global) {
         mover.move_as_system(generation, substep, blocks);
     } else {
-        mover.move(population.advance(generation, substep, blocks), substep, blocks);  // all but free flights
+        const ActiveSet active = population.advance(generation, substep, blocks);  // moves free flights, returns others
+        mover.move(active, substep, blocks);
     }
 }
 

@@ -55,6 +55,22 @@ CurvedEnd end_of(const CurvedContact& arc) {
     return {change.high, after, support == SupportChange::none};
 }
 
+/// Returns true if the material of one of the surfaces moves by itself and grips, like that of a conveyor belt.
+bool is_any_driven(const ContactManifold& manifold, const SurfaceKinematics& surfaces) {
+    const ContactState touched = manifold.contact_state();
+    return std::any_of(touched.surfaces.begin(), touched.surfaces.begin() + touched.count,
+                       [&](SurfaceId surface) { return surfaces.material_of(surface).drives(); });
+}
+
+/// Returns true if the velocity of one of these materials depends on the position, because the material turns.
+bool is_any_turned(const ContactManifold& manifold, const SurfaceKinematics& surfaces) {
+    const ContactState touched = manifold.contact_state();
+    return std::any_of(touched.surfaces.begin(), touched.surfaces.begin() + touched.count, [&](SurfaceId surface) {
+        const Material& material = surfaces.material_of(surface);
+        return material.drives() && material.motion.angular_velocity != Vec3{};
+    });
+}
+
 }  // namespace
 
 ContactFollower::ContactFollower(ParticleStep& step, ContactManifold& manifold)
@@ -68,7 +84,7 @@ ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration
         particle().spin = Vec3{};
         return {std::nullopt, false, true};
     }
-    if (!manifold_.is_curved() && !manifold_.is_turned(surfaces())) {
+    if (!manifold_.is_curved() && !is_any_turned(manifold_, surfaces())) {
         if (const auto slip = plan_turning_slip(pull, duration)) return follow_flat(*slip, pull);
         const ContactInterval interval = plan(pull, duration);
         if (interval.at_rest) {
@@ -163,7 +179,7 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
     Motion motion = motion_after(interval, elapsed, is_over, state().velocity, state().radius,
                                  manifold_.supports(surfaces()).all());
     const double work = pull.acts ? flat.work_until(elapsed, state().position - from) : 0.0;
-    if (!manifold_.is_driven(surfaces())) {
+    if (!is_any_driven(manifold_, surfaces())) {
         limit_energy(motion, state().radius, most + 2.0 * work,
                      length(forces) * step_.geometry().contact_offset(state().position));
     }

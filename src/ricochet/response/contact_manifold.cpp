@@ -197,18 +197,6 @@ ContactManifold::SupportList ContactManifold::supports(const SurfaceKinematics& 
     return supports;
 }
 
-bool ContactManifold::is_driven(const SurfaceKinematics& surfaces) const {
-    return std::any_of(surfaces_.begin(), surfaces_.begin() + count_,
-                       [&](SurfaceId surface) { return surfaces.material_of(surface).drives(); });
-}
-
-bool ContactManifold::is_turned(const SurfaceKinematics& surfaces) const {
-    return std::any_of(surfaces_.begin(), surfaces_.begin() + count_, [&](SurfaceId surface) {
-        const Material& material = surfaces.material_of(surface);
-        return material.drives() && material.motion.angular_velocity != Vec3{};
-    });
-}
-
 FrictionLimits ContactManifold::grip(double pressure, double step) const {
     return {pressure, step / kShortestIntervals, kTouchingOffsets * geometry_.contact_offset(particle_.position)};
 }

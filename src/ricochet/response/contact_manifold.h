@@ -66,10 +66,6 @@ public:
     [[nodiscard]] bool is_curved() const {
         return !std::all_of(flat_.begin(), flat_.begin() + count_, [](bool flat) { return flat; });
     }
-    /// Returns true if one of the surfaces moves and grips.
-    [[nodiscard]] bool is_driven(const SurfaceKinematics& surfaces) const;
-    /// Returns true if one of the gripping surfaces rotates, so that its velocity depends on the position.
-    [[nodiscard]] bool is_turned(const SurfaceKinematics& surfaces) const;
     /// Returns the contact state for the next step.
     [[nodiscard]] ContactState contact_state() const { return {surfaces_, static_cast<std::uint8_t>(count_), 0.0}; }
     /// Restores the surfaces of the last step, without normals: touch_again() must follow.

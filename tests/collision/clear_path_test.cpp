@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "collision/worlds.h"
 #include "ricochet/core/random.h"
+#include "ricochet/geometry/predicates/predicates.h"
 #include "support/counts.h"
 #include "support/mesh_distance.h"
 #include "support/simple_meshes.h"
@@ -56,20 +58,44 @@ TEST(ClearPath, ClearPathStaysAwayFromEveryTriangle) {
     EXPECT_GT(clear, test::scaled(2000) / 10);
 }
 
-TEST(ClearBall, ContainsNoTriangleAndIsNearlyTheLargest) {
+TEST(ClearBall, ContainsNoTriangleAndLeavesTheParticleNearlyAllTheSpace) {
     const TriangleMesh mesh = testing::sphere_mesh({0.2, 0, 0}, 1.0, 3);
     const CollisionWorld world = world_of(mesh_collider(mesh));
     RandomSequence random(6, 0, 0);
     for (int k = 0; k < test::scaled(1000); ++k) {
         SCOPED_TRACE("case " + std::to_string(k));
         const Vec3 center = 2.0 * random.in_unit_ball();
+        const double radius = k % 2 == 0 ? 0.0 : 0.3 * random.uniform();
         const double within = 2.0 * random.uniform();
         const double distance = distance_from(mesh, center);
-        const ClearBall ball = find_clear_ball(world, center, within);
+        const ClearBall ball = find_clear_ball(world, center, radius, within);
         EXPECT_LE(ball.radius, distance);
-        EXPECT_GE(ball.radius, 0.799 * std::min(within, distance));
+        if (distance > radius) {
+            EXPECT_GE(ball.radius - radius, 0.799 * std::min(within, distance - radius));
+        }
         const Vec3 p = center + (1.5 * ball.radius * random.uniform()) * random.unit_vector();
         EXPECT_LE(ball.bound_at(p), distance_from(mesh, p));
+    }
+}
+
+// The distance from a triangle is rounded in proportion to the triangle's size. A ball beside its plane must not reach
+// behind it, where the centre is much nearer to the plane than to the corners.
+TEST(ClearBall, DoesNotReachThroughATriangleThatIsHugeBesideTheDistance) {
+    RandomSequence random(7, 0, 0);
+    for (int k = 0; k < test::scaled(40); ++k) {
+        SCOPED_TRACE("case " + std::to_string(k));
+        const double size = std::pow(10.0, 9.0 * random.uniform());
+        const Vec3 normal = random.unit_vector();
+        const auto [t, b] = tangent_frame(normal);
+        const TriangleMesh mesh{{size * t, size * (-0.5 * t + 0.8 * b), size * (-0.5 * t - 0.8 * b)}, {{0, 1, 2}}};
+        const CollisionWorld world = world_of(mesh_collider(mesh));
+        const Vec3 center = (1e-16 * size * random.uniform()) * normal + (0.01 * random.uniform()) * t;
+        const ClearBall ball = find_clear_ball(world, center, 0.0, 1.0);
+        for (int s = 0; s < 10; ++s) {
+            const Vec3 p = center + ball.radius * random.unit_vector();
+            const auto [a, c, d] = world.corners_of_triangle(0);
+            EXPECT_FALSE(segment_intersects_triangle(center, p, a, c, d)) << ball.radius;
+        }
     }
 }
 
@@ -78,9 +104,16 @@ TEST(ClearBall, ReplacesTheDistanceFieldWhereItKnowsMore) {
     const CollisionWorld world = world_of(mesh_collider(mesh));
     const Vec3 near{0.9, 0.0, 0.0};
     EXPECT_LE(room_beside_triangles(world, near, 0.0), 0.0);
-    const ClearBall ball = find_clear_ball(world, near, 1.0);
-    EXPECT_GT(room_beside_triangles(world, near, 0.0, ball), 0.07);
-    EXPECT_GT(room_beside_triangles(world, near, 0.05, ball), 0.02);
+    EXPECT_GT(room_beside_triangles(world, near, 0.0, find_clear_ball(world, near, 0.0, 1.0)), 0.07);
+    EXPECT_GT(room_beside_triangles(world, near, 0.05, find_clear_ball(world, near, 0.05, 1.0)), 0.03);
+}
+
+// Also if a step is a small part of the radius.
+TEST(ClearBall, GivesRoomToAThickSphere) {
+    const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 3);
+    const CollisionWorld world = world_of(mesh_collider(mesh));
+    const ClearBall ball = find_clear_ball(world, {}, 0.5, 0.04);
+    EXPECT_GT(room_beside_triangles(world, {}, 0.5, ball), 0.03);
 }
 
 TEST(ClearPath, PlanesAndShapesBoundThePath) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,8 +46,15 @@ private:
 
 MovingParticle random_particle(RandomSequence& random, double radius) {
     MovingParticle particle;
-    particle.state = {3.0 * random.in_unit_ball(), 5.0 * random.in_unit_ball(), 1.0, radius, 0.0};
+    particle.state = {3.0 * random.in_unit_ball(), 5.0 * random.in_unit_ball(), 1.0, radius, random.uniform()};
     return particle;
+}
+
+void expect_equal(const FlownPiece& a, const FlownPiece& b) {
+    EXPECT_EQ(a.path.c, b.path.c);
+    EXPECT_EQ(a.path.end, b.path.end);
+    EXPECT_EQ(a.begin, b.begin);
+    EXPECT_EQ(a.duration, b.duration);
 }
 
 class ClearFlight : public ::testing::TestWithParam<IntegratorKind> {};
@@ -60,23 +68,28 @@ TEST_P(ClearFlight, EndsInTheBitsOfAStepThatTestsEveryTriangle) {
     for (int k = 0; k < test::scaled(400); ++k) {
         SCOPED_TRACE("case " + std::to_string(k));
         const MovingParticle start = random_particle(random, k % 2 == 0 ? 0.0 : 0.1);
+        const double duration = 0.01 + 0.01 * random.uniform();
         MoveScratch scratch;
         scratch.record_segments = scratch.record_flown = scratch.record_motions = k % 3 == 0;
         MovingParticle fast = start;
         air.world().set_culling(true);
-        if (!fly_clear(air.rules(), fast, 0.02, scratch)) continue;
+        std::optional<Flight> flight;
+        if (!fly_clear(air.rules(), fast, duration, scratch, flight)) continue;
         ++clear;
         MovingParticle slow = start;
         MoveScratch reference;
         reference.record_segments = reference.record_flown = reference.record_motions = k % 3 == 0;
         air.world().set_culling(false);
-        (void)ExactResponse(air.rules()).move(slow, 0.02, reference);
+        (void)ExactResponse(air.rules()).move(slow, duration, reference);
         EXPECT_EQ(fast.state.position, slow.state.position);
         EXPECT_EQ(fast.state.velocity, slow.state.velocity);
         EXPECT_EQ(fast.state.time, slow.state.time);
         EXPECT_EQ(fast.contact, slow.contact);
         EXPECT_EQ(scratch.motions.size(), reference.motions.size());
-        EXPECT_EQ(scratch.flown.size(), reference.flown.size());
+        ASSERT_EQ(scratch.flown.size(), reference.flown.size());
+        for (std::size_t p = 0; p < scratch.flown.size(); ++p) {
+            expect_equal(scratch.flown[p], reference.flown[p]);
+        }
         ASSERT_EQ(scratch.segments.empty(), reference.segments.empty());
         if (scratch.segments.empty()) continue;
         EXPECT_EQ(scratch.segments.back().to, reference.segments.back().to);
@@ -91,14 +104,15 @@ INSTANTIATE_TEST_SUITE_P(By, ClearFlight, ::testing::ValuesIn(test::kAllIntegrat
 TEST(ClearFlight, ParticleInContactOrNearASurfaceIsNotMoved) {
     const Air air(IntegratorKind::midpoint);
     MoveScratch scratch;
+    std::optional<Flight> flight;
     MovingParticle near;
     near.state = {{0, 0, 1.001}, {1, 0, 0}, 1.0, 0.0, 0.0};
-    EXPECT_FALSE(fly_clear(air.rules(), near, 0.02, scratch));
+    EXPECT_FALSE(fly_clear(air.rules(), near, 0.02, scratch, flight));
     EXPECT_EQ(near.state.time, 0.0);
     MovingParticle touching;
     touching.state = {{0, 0, 3}, {1, 0, 0}, 1.0, 0.0, 0.0};
     touching.contact.count = 1;
-    EXPECT_FALSE(fly_clear(air.rules(), touching, 0.02, scratch));
+    EXPECT_FALSE(fly_clear(air.rules(), touching, 0.02, scratch, flight));
     EXPECT_EQ(touching.state.position, (Vec3{0, 0, 3}));
 }
 

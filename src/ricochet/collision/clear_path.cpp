@@ -10,11 +10,13 @@ namespace ricochet {
 
 namespace {
 
-/// Factor on distances that covers the rounding of closest_point_on_triangle() and of the steps inside a clear ball.
-/// Local: an error bound of this arithmetic.
-constexpr double kDistanceRounding = 1.0 - 0x1p-40;
+/// Bounds of the rounding of a distance from a triangle, relative to the distance and to the distance of the farthest
+/// corner. The error of closest_point_on_triangle() is about 2^-50 of the latter. Local: error bounds of this
+/// arithmetic.
+constexpr double kDistanceRounding = 0x1p-40;
+constexpr double kCornerRounding = 0x1p-46;
 
-/// Part of the distance to the nearest known triangle within which a search goes on. More: larger balls. Less: fewer
+/// Part of the gap to the nearest known triangle within which a search goes on. More: larger balls. Less: fewer
 /// triangles are tested. Local, because only the cost depends on it.
 constexpr double kSearchedPart = 0.8;
 
@@ -25,19 +27,27 @@ double squared_distance_from_box(const Vec3& p, const CollisionWorld::Corners& t
     return length_squared(outside);
 }
 
+/// Returns a lower bound, in m, on the distance of a point from a triangle.
+double distance_bound(const Vec3& p, const CollisionWorld::Corners& triangle) {
+    const auto& [a, b, c] = triangle;
+    const double distance = std::sqrt(closest_point_on_triangle(p, a, b, c).distance_squared);
+    const double farthest = std::max({max_abs(a - p), max_abs(b - p), max_abs(c - p)});
+    return (1.0 - kDistanceRounding) * distance - kCornerRounding * farthest;
+}
+
 }  // namespace
 
-ClearBall find_clear_ball(const CollisionWorld& world, const Vec3& center, double within) {
-    double radius = kSearchedPart * within;
-    world.bvh_for(0.0).query_point(center, radius, [&](std::uint32_t triangle) {
+ClearBall find_clear_ball(const CollisionWorld& world, const Vec3& center, double radius, double within) {
+    double free = radius + kSearchedPart * within;
+    world.bvh_for(0.0).query_point(center, free, [&](std::uint32_t triangle) {
         const CollisionWorld::Corners corners = world.corners_of_triangle(triangle);
-        if (squared_distance_from_box(center, corners) >= radius * radius) return radius;
-        const auto& [a, b, c] = corners;
-        radius =
-            std::min(radius, kSearchedPart * std::sqrt(closest_point_on_triangle(center, a, b, c).distance_squared));
-        return radius;
+        if (squared_distance_from_box(center, corners) >= free * free) return free;
+        const double distance = distance_bound(center, corners);
+        const double beside = radius + kSearchedPart * (distance - radius);
+        free = std::max(0.0, std::min({free, distance, beside}));
+        return free;
     });
-    return {center, kDistanceRounding * radius};
+    return {center, (1.0 - kDistanceRounding) * free};
 }
 
 double room_beside_triangles(const CollisionWorld& world, const Vec3& center, double radius, const ClearBall& clear) {
@@ -50,8 +60,7 @@ bool is_path_clear(const CollisionWorld& world, const Path& path, double radius,
     const Vec3& start = path.c[0];
     double reach = length(path.end - start);
     for (const Vec3& control : path.control_points()) reach = std::max(reach, length(control - start));
-    // The slack grows with the coordinates, at most by as much as the path is long.
-    const double slack = query_slack(max_abs(start) + reach, radius);
+    const double slack = query_slack(largest_coordinate(path), radius);
     if (!(reach + slack < room)) return false;
     const double margin = radius + slack;
     return std::all_of(world.planes().begin(), world.planes().end(),

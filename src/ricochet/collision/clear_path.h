@@ -16,9 +16,10 @@ struct ClearBall {
     [[nodiscard]] double bound_at(const Vec3& p) const { return radius - length(p - center); }
 };
 
-/// Returns a ball around a point that contains no triangle. Its radius is at least four fifths of the smaller of
-/// `within`, in m, and the distance to the nearest triangle. The point must be finite.
-[[nodiscard]] ClearBall find_clear_ball(const CollisionWorld& world, const Vec3& center, double within);
+/// Returns a ball of free space around a particle of the given radius, in m. It contains no triangle. The gap between
+/// its radius and the particle's is at least four fifths of the smaller of `within`, in m, and the distance between the
+/// particle and the nearest triangle. The centre must be finite.
+[[nodiscard]] ClearBall find_clear_ball(const CollisionWorld& world, const Vec3& center, double radius, double within);
 
 /// Returns a lower bound, in m, on the distance from a ball's surface to the triangles of the world, less the distance
 /// within which a contact query tests triangles. Infinite without triangles; at most 0 near them. The centre must be

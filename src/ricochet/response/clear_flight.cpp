@@ -31,7 +31,7 @@ double room_for(const CollisionWorld& world, MovingParticle& particle, double st
     ClearBall& clear = particle.clear;
     const bool is_searched = clear.radius > 0.0 && length(position - clear.center) < kStepsBetweenSearches * step;
     if (is_searched) return 0.0;
-    clear = find_clear_ball(world, position, radius + kSearchedSteps * step);
+    clear = find_clear_ball(world, position, radius, kSearchedSteps * step);
     room = room_beside_triangles(world, position, radius, clear);
     return room > step ? room : 0.0;
 }
@@ -42,8 +42,9 @@ void record(const ResponseRules& rules, const MovingParticle& before, const Movi
     const Path& path = flight.path;
     if (scratch.record_segments) scratch.segments.push_back({path.c[0], path.end, before.state.time, 0.0, 0.0});
     if (scratch.record_flown) {
-        scratch.flown.push_back(
-            {path, before.state.time, path.duration, before.state.velocity, after.state.velocity, true});
+        // Computed like the beginning of a flight that made a query, to the last bit.
+        const double begin = after.state.time - path.duration;
+        scratch.flown.push_back({path, begin, path.duration, before.state.velocity, after.state.velocity, true});
     }
     if (!scratch.record_motions) return;
     MovingParticle moved = before;
@@ -55,22 +56,23 @@ void record(const ResponseRules& rules, const MovingParticle& before, const Movi
 }  // namespace
 
 std::optional<MoveOutcome> fly_clear(const ResponseRules& rules, MovingParticle& particle, double duration,
-                                     MoveScratch& scratch) {
+                                     MoveScratch& scratch, std::optional<Flight>& flight) {
     if (!may_fly_clear(rules, particle)) return std::nullopt;
     ForceInput& state = particle.state;
     const double room = room_for(rules.world, particle, duration * length(state.velocity));
     if (!(room > 0.0)) return std::nullopt;
-    const Flight flight = first_flight(rules, particle, duration);
-    if (flight.path.duration != duration || !can_be_followed(flight.path)) return std::nullopt;
-    if (!is_path_clear(rules.world, flight.path, state.radius, room)) return std::nullopt;
+    flight = first_flight(rules, particle, duration);
+    const Path& path = flight->path;
+    if (path.duration != duration || !can_be_followed(path)) return std::nullopt;
+    if (!is_path_clear(rules.world, path, state.radius, room)) return std::nullopt;
     const bool is_recorded = scratch.record_segments || scratch.record_flown || scratch.record_motions;
     const std::optional<MovingParticle> before = is_recorded ? std::optional(particle) : std::nullopt;
-    state.position = flight.path.end;
-    state.velocity = flight.end_velocity;
+    state.position = path.end;
+    state.velocity = flight->end_velocity;
     state.time += duration;
-    if (before) record(rules, *before, particle, flight, scratch);
+    if (before) record(rules, *before, particle, *flight, scratch);
     MoveOutcome outcome;
-    outcome.is_coarse = flight.is_coarse;
+    outcome.is_coarse = flight->is_coarse;
     return outcome;
 }
 

@@ -71,8 +71,9 @@ std::optional<LookAhead> look_ahead_of(const ParticleStep& step, const Flight& f
 ExactResponse::ExactResponse(const ResponseRules& rules) : Response(rules), frame_rules_(rules_) {}
 
 MoveOutcome ExactResponse::move(MovingParticle& particle, double duration, MoveScratch& scratch) const {
-    if (const auto clear = fly_clear(rules_, particle, duration, scratch)) return *clear;
-    return ParticleMover(rules_, frame_rules_, particle, duration, scratch).run();
+    std::optional<Flight> planned;
+    if (const auto clear = fly_clear(rules_, particle, duration, scratch, planned)) return *clear;
+    return ParticleMover(rules_, frame_rules_, particle, duration, scratch).run(planned ? &*planned : nullptr);
 }
 
 SupportedAcceleration ExactResponse::supported_acceleration(const MovingParticle& particle, const Vec3& pull) const {
@@ -87,7 +88,7 @@ void ExactResponse::add_weight(const MovingParticle& particle, double duration, 
     hits.insert(hits.end(), scratch.hits.begin(), scratch.hits.end());
 }
 
-MoveOutcome ParticleMover::run() {
+MoveOutcome ParticleMover::run(const Flight* planned) {
     MoveOutcome& outcome = step_.outcome();
     release_speed_ = particle_.contact.release_speed();
     std::optional<Contact> contact = resume_contact();
@@ -96,7 +97,10 @@ MoveOutcome ParticleMover::run() {
         rules_.poll();
         outcome.free_for = outcome.candidates_for = 0.0;
         // Contacts are large to copy, so one is assigned only if needed.
-        if (!contact) contact = advance_flight(flight, std::exchange(flies_anew_, false) || is_first);
+        if (!contact) {
+            contact =
+                advance_flight(flight, std::exchange(flies_anew_, false) || is_first, is_first ? planned : nullptr);
+        }
         while (contact && !outcome.is_absorbed() && may_resolve_contact()) contact = resolve_contact(flight, *contact);
         if (outcome.is_absorbed()) break;
         if (contact && !follows_receding_body(contact)) {
@@ -116,11 +120,12 @@ std::optional<Contact> ParticleMover::resume_contact() {
 
 /// Moves the particle in free flight to the end of the step or to the next contact, which is returned. flight: on input
 /// the last flight, on output the new one.
-std::optional<Contact> ParticleMover::advance_flight(Flight& flight, bool is_first) {
+std::optional<Contact> ParticleMover::advance_flight(Flight& flight, bool is_first, const Flight* planned) {
     const double remaining = planned_duration(step_, is_first);
     const Integrator integrator = is_without_impulse_ ? IntegratorKind::ballistic : rules_.settings.integrator;
-    flight = is_first ? first_flight(rules_, particle_, remaining, integrator)
-                      : resume_flight(integrator, rules_.forces, particle_.state, flight, remaining);
+    flight = planned != nullptr ? *planned
+             : is_first         ? first_flight(rules_, particle_, remaining, integrator)
+                                : resume_flight(integrator, rules_.forces, particle_.state, flight, remaining);
     if (particle_.beyond > 0.0) cut(flight, step_.remaining(), integrator, rules_.forces);
     const auto look_ahead = look_ahead_of(step_, flight);
     step_.log().note_impact();

@@ -33,12 +33,13 @@ public:
           step_(rules, particle, duration, scratch),
           contact_phase_(step_) {}
 
-    MoveOutcome run();
+    /// planned: the first flight, if the caller has computed it; only for a particle without contact.
+    MoveOutcome run(const Flight* planned = nullptr);
 
 private:
     [[nodiscard]] std::optional<Contact> resume_contact();
     /// is_first: the flight does not continue the last one.
-    [[nodiscard]] std::optional<Contact> advance_flight(Flight& flight, bool is_first);
+    [[nodiscard]] std::optional<Contact> advance_flight(Flight& flight, bool is_first, const Flight* planned);
     [[nodiscard]] bool may_resolve_contact();
     [[nodiscard]] std::optional<Contact> resolve_contact(const Flight& flight, Contact& contact);
     [[nodiscard]] std::optional<Contact> resolve_contact_at_rest(const Flight& flight, const Contact& contact);

@@ -92,7 +92,7 @@ void schedule_query(const MoverParts& parts, std::size_t i, const MovingParticle
         parts.schedule.leave_alone(i);
     } else if (!flies_on(moved, outcome) || parts.observers.coupled->is_active() || is_pulled ||
                parts.store.cores().has(i)) {
-        parts.schedule.forget(i);
+        parts.schedule.forget(i, moved.clear);
     } else {
         FreeFlightForecast forecast;
         forecast.clear = moved.clear;

@@ -24,6 +24,13 @@ bool finds_contacts(const SimulationOptions& options, const Response& response) 
     return options.response == ResponseKind::exact && !options.flow && !response.keeps_sides();
 }
 
+/// Returns true if particles look for free space around them (clear_flight.h).
+bool keeps_clear_balls(const PopulationParts& parts) {
+    const ResponseRules& rules = parts.response.rules();
+    return parts.options.response == ResponseKind::exact && !parts.options.flow && rules.bodies.empty() &&
+           !rules.world.triangles().empty() && !rules.forces.is_uniform();
+}
+
 /// Returns true for a point on a surface. A sphere whose centre lies on a surface is in overlap.
 bool starts_on_surface(const CollisionScene& scene, const Particle& particle) {
     const Vec3 position = flush_tiny(particle.position);
@@ -76,7 +83,7 @@ struct Population::Arrival {
 Population::Population(ParticleStore store, const AccelerationSwitches& acceleration, double particle_bytes,
                        const PopulationParts& parts)
     : store_(std::move(store)),
-      schedule_(parts.clock, !parts.response.rules().forces.is_uniform()),
+      schedule_(parts.clock, keeps_clear_balls(parts)),
       flights_(store_, schedule_, parts.response.rules().forces, parts.options.integrator, parts.modules.observers()),
       acceleration_(acceleration),
       memory_(particle_bytes),
@@ -209,7 +216,7 @@ void Population::wake(std::size_t i) {
 }
 
 void Population::forget_queries() {
-    schedule_.reset(size());
+    schedule_.reset(size(), keeps_clear_balls(parts_));
     for (std::size_t i = 0; i < size(); ++i) {
         if (store_.is_fixed(i) || store_.is_asleep(i)) schedule_.leave_alone(i);
     }

@@ -50,17 +50,20 @@ void QuerySchedule::compact(const std::vector<std::uint8_t>& keep) {
 void QuerySchedule::rearrange(const std::vector<std::size_t>& from) {
     std::vector<std::uint32_t> next(from.size(), kUnknown);
     std::vector<ContactCandidates> candidates(from.size());
+    std::vector<ClearBall> clear(keeps_clear_balls_ ? from.size() : 0);
     for (std::size_t i = 0; i < from.size(); ++i) {
         if (from[i] == kNew) continue;
         next[i] = next_[from[i]];
         candidates[i] = candidates_[from[i]];
+        if (keeps_clear_balls_) clear[i] = clear_[from[i]];
     }
     next_ = std::move(next);
     candidates_ = std::move(candidates);
-    clear_.assign(keeps_clear_balls_ ? from.size() : 0, ClearBall{});
+    clear_ = std::move(clear);
 }
 
-void QuerySchedule::reset(std::size_t count) {
+void QuerySchedule::reset(std::size_t count, bool keeps_clear_balls) {
+    keeps_clear_balls_ = keeps_clear_balls;
     next_.assign(count, kUnknown);
     candidates_.assign(count, ContactCandidates{});
     clear_.assign(keeps_clear_balls_ ? count : 0, ClearBall{});

@@ -82,9 +82,8 @@ struct FreeFlightForecast {
 /// If the state of every particle were unknown, results would be bitwise the same.
 class QuerySchedule {
 public:
-    /// clock must outlive the object.
-    /// clock must outlive it. keeps_clear_balls: clear() returns the balls of forecasts. Steps under uniform forces do
-    /// not use them.
+    /// clock must outlive the object. keeps_clear_balls: clear() returns the balls of forecasts. Steps under uniform
+    /// forces do not use them.
     explicit QuerySchedule(const StepClock& clock, bool keeps_clear_balls = false)
         : clock_(clock), keeps_clear_balls_(keeps_clear_balls) {}
 
@@ -139,7 +138,7 @@ public:
     /// The next three functions set the state of a particle after its move. Several threads may call them for different
     /// particles.
     void leave_alone(std::size_t i) { set(i, kLeftAlone, {}, {}); }
-    void forget(std::size_t i) { set(i, kUnknown, {}, {}); }
+    void forget(std::size_t i, const ClearBall& clear = {}) { set(i, kUnknown, {}, clear); }
     void set_flying(std::size_t i, const FreeFlightForecast& forecast);
 
     /// Adds a particle that is unknown or left alone.
@@ -151,13 +150,14 @@ public:
     static constexpr std::size_t kNew = std::numeric_limits<std::size_t>::max();
     /// Rearranges the particles. Particle i had the index from[i] before, or is a new particle of unknown state.
     void rearrange(const std::vector<std::size_t>& from);
-    /// Restarts with `count` particles of unknown state.
-    void reset(std::size_t count);
+    /// Restarts with `count` particles of unknown state. keeps_clear_balls: clear() returns the balls of forecasts.
+    void reset(std::size_t count, bool keeps_clear_balls);
 
     /// Prefetches the data of a particle.
     void prefetch(std::size_t i) const {
         __builtin_prefetch(&next_[i], 1);
         __builtin_prefetch(&candidates_[i], 1);
+        if (keeps_clear_balls_) __builtin_prefetch(&clear_[i], 1);
     }
 
 private:

@@ -200,7 +200,7 @@ void require_known_extensions(const GltfLocation& document) {
     }
     const GltfList required = document.items("extensionsRequired");
     for (std::size_t i = 0; i < required.size(); ++i) {
-        const std::string& name = required[i].text();
+        const std::string name = required[i].text();
         if (name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression" ||
             name == "KHR_meshopt_compression") {
             required[i].fail(

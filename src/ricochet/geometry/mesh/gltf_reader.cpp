@@ -276,7 +276,7 @@ ParsedMesh read_gltf(const MeshSource& source, const std::optional<std::filesyst
     const GltfValue root = parse_gltf_json(source, parts.json);
     const GltfLocation document(source, root, "");
     const GltfLocation asset = document.at("asset");
-    const std::string& version = asset.at("version").text();
+    const std::string version = asset.at("version").text();
     if (!version.starts_with("2.")) {
         source.fail(fmt::format("found glTF {}, expected 2.0: export as glTF 2.0", in_quotes(version)));
     }

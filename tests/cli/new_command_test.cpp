@@ -122,8 +122,8 @@ TEST(NewCommand, FitsAMeshOfAnySizeAndPosition) {
         const auto made = test::run_ricochet(
             {"new", folder.write("m.obj", mesh), "--output", scene, "--template", "debris", "--force"});
         ASSERT_EQ(made.exit_code, 0) << made.errors;
-        const auto run = test::run_ricochet(
-            {"run", scene, "--output", scene + "_run", "--set", "output.every=100", "--set", "emitters[0].rate=300"});
+        const auto run = test::run_ricochet({"run", scene, "--output", scene + "_run", "--set", "output.every=100",
+                                             "--set", "emitters[0].limit=60", "--set", "emitters[1].limit=20"});
         EXPECT_EQ(run.exit_code, 0) << run.errors;
         EXPECT_EQ(run.output.find(", 0 contacts"), std::string::npos) << run.output;
     }

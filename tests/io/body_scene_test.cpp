@@ -160,7 +160,7 @@ TEST(BodyScene, SelfIntersectingMeshGivesAWarningIfItsVolumeCounts) {
     const Lines crossing = warnings(0.5);
     ASSERT_EQ(crossing.size(), 1U);
     EXPECT_NE(crossing[0].find(
-                  "frames.wheel.body: the mesh \"cubes\" crosses itself, or nests shells that are wound alike: some 3"),
+                  "frames.wheel.body: the mesh \"cubes\" crosses itself, or nests shells that are wound alike: about 3"),
               std::string::npos)
         << crossing[0];
 }

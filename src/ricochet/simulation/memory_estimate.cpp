@@ -219,7 +219,7 @@ double bytes_per_particle(const SimulationSetup& setup) {
     if (std::any_of(setup.emitters.begin(), setup.emitters.end(), is_cloud)) bytes += kCloudParticle;
     if (setup.options.verify) bytes += kVerifiedParticle;
     if (setup.options.particle_contacts) bytes += kCollidingSphere;
-    const auto varies = [](const std::unique_ptr<Force>& force) { return !force->is_uniform(); };
+    const auto varies = [](const std::unique_ptr<Force>& force) { return force && !force->is_uniform(); };
     if (std::any_of(setup.forces.begin(), setup.forces.end(), varies)) bytes += kClearBall;
     if (!setup.particles_forces.empty()) bytes += kCoupledParticle;
     if (setup.options.response != ResponseKind::exact) bytes += kSide * static_cast<double>(setup.colliders.size());

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 from typing import Any, NamedTuple
 
@@ -107,7 +108,7 @@ class TriangleTotals(NamedTuple):
 
 def _explain_fields(kind: Any) -> None:
     """Sets the docstrings of a named tuple's fields from the docstring of the tuple, for help()."""
-    for name, text in re.findall(r"^    (\w+): (.+)$", kind.__doc__, re.MULTILINE):
+    for name, text in re.findall(r"^(\w+): (.+)$", inspect.cleandoc(kind.__doc__), re.MULTILINE):
         getattr(kind, name).__doc__ = text
 
 

@@ -250,7 +250,8 @@ def _own_materials(mesh: Any) -> List[str]:
     """Returns the material names that the user has set on a mesh. Names read from a file do not count."""
     if not isinstance(mesh, Mesh) or mesh.materials is None or "materials" in mesh.__dict__.get(_OF_FILE, ()):
         return []
-    return [name for name in np.unique(mesh.materials).tolist() if name]
+    names: Any = np.unique(mesh.materials).tolist()
+    return [name for name in names if name]
 
 
 def _with_own_materials(plain: Any, collider: Any) -> Any:
@@ -291,7 +292,8 @@ def _statements(mesh: Mesh) -> Iterator[List[str]]:
     columns: List[Tuple[str, List[str]]] = []
     for statement, array in (("o", mesh.objects), ("g", mesh.groups), ("usemtl", mesh.materials)):
         if array is not None:
-            columns.append((statement, [name if _is_writable(name) else "" for name in array.tolist()]))
+            names: Any = array.tolist()
+            columns.append((statement, [name if _is_writable(name) else "" for name in names]))
     last = [""] * len(columns)
     for number in range(len(mesh)):
         changed = []

@@ -215,7 +215,8 @@ def _normals(mesh: Mesh) -> Floats:
     edges = corners[:, 1:] - corners[:, :1]
     size = np.abs(edges).max(axis=2, keepdims=True)
     edges = edges / np.where(size > 0.0, size, 1.0)
-    normals: Floats = np.cross(edges[:, 0], edges[:, 1]) / 3.0
+    crossed: Any = np.cross(edges[:, 0], edges[:, 1])
+    normals: Floats = crossed / 3.0
     return normals
 
 

@@ -24,6 +24,8 @@ asked = 0
 for name in sorted(set(dir(ricochet._core.__dict__[sys.argv[1]])) - set(dir(object)) | {"__repr__", "__reduce__"}):
     if name in ("__init__", "__new__", "__class__", "__setstate__", "__module__", "__dict__", "read"):
         continue
+    if name.startswith("_pybind11"):  # pybind11's own, which other modules call
+        continue
     for arguments in ((), (points,), (points, points), (b"",), (1,), (1, None)):
         try:
             value = getattr(made, name)

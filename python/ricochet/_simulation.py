@@ -307,9 +307,11 @@ def _statements(mesh: Mesh) -> Iterator[List[str]]:
 def _write(mesh: Mesh, file: Path) -> None:
     """Writes a mesh as an OBJ file, with all digits of every double. The triangles have their names and keep their
     order."""
+    vertices: Any = mesh.vertices.tolist()
+    faces: Any = mesh.faces.tolist()
     with open(file, "w", encoding="utf-8", errors="surrogateescape") as stream:
-        stream.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in mesh.vertices.tolist())
-        for (a, b, c), statements in zip(mesh.faces.tolist(), _statements(mesh)):
+        stream.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in vertices)
+        for (a, b, c), statements in zip(faces, _statements(mesh)):
             stream.writelines(statements)
             stream.write(f"f {a + 1} {b + 1} {c + 1}\n")
 

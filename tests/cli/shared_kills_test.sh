@@ -5,6 +5,9 @@
 set -euo pipefail
 ricochet="$1"
 mpirun="$2"
+# Open MPI 5 has no such option.
+quiet=()
+if "$mpirun" --quiet --version >/dev/null 2>&1; then quiet=(--quiet); fi
 scene="$3/fountain.json"
 folder="$4"
 kills="$5"
@@ -24,7 +27,7 @@ fail() {
 begin() {
     rm -f "$folder"/pid.*
     # shellcheck disable=SC2016  # the ranks fill these in
-    "$mpirun" --quiet --map-by :OVERSUBSCRIBE -n "$1" bash -c 'echo $$ >"$0/pid.$OMPI_COMM_WORLD_RANK"; exec "$@"' \
+    "$mpirun" "${quiet[@]}" --map-by :OVERSUBSCRIBE -n "$1" bash -c 'echo $$ >"$0/pid.$OMPI_COMM_WORLD_RANK"; exec "$@"' \
         "$folder" "$ricochet" run "$scene" --output "$folder/run" --output-state "$folder/run.csv" "${cut[@]}" "${@:2}" \
         --threads 1 --quiet >"$folder/out" 2>&1 &
     run=$!

@@ -8,6 +8,9 @@
 set -euo pipefail
 ricochet="$1"
 mpirun="$2"
+# Open MPI 5 has no such option.
+quiet=()
+if "$mpirun" --quiet --version >/dev/null 2>&1; then quiet=(--quiet); fi
 scenes="$3"
 folder="$4"
 kills="$5"
@@ -25,7 +28,7 @@ fail() {
 # ranks N ARGUMENTS...: runs N processes of one thread each, which write their process ids to FOLDER/pid.RANK.
 ranks() {
     # shellcheck disable=SC2016  # the ranks fill these in
-    "$mpirun" --quiet --map-by :OVERSUBSCRIBE -n "$1" bash -c 'echo $$ >"$0/pid.$OMPI_COMM_WORLD_RANK"; exec "$@"' \
+    "$mpirun" "${quiet[@]}" --map-by :OVERSUBSCRIBE -n "$1" bash -c 'echo $$ >"$0/pid.$OMPI_COMM_WORLD_RANK"; exec "$@"' \
         "$folder" "$ricochet" run "${@:2}" --threads 1 --quiet
 }
 
@@ -268,7 +271,7 @@ unlike() {
     local before
     before="$(ls -A "$folder/signal")"
     code=0
-    "$mpirun" --quiet --map-by :OVERSUBSCRIBE -n 1 "$ricochet" run "$scene" --output "$folder/signal" --quiet : \
+    "$mpirun" "${quiet[@]}" --map-by :OVERSUBSCRIBE -n 1 "$ricochet" run "$scene" --output "$folder/signal" --quiet : \
         -n 1 "$ricochet" run "$scene" --quiet "${@:2}" >"$folder/$1.out" 2>&1 || code=$?
     expect_end "$1" 2 'have found different scenes, options or checkpoints'
     [[ "$(ls -A "$folder/signal")" == "$before" ]] || fail "$1: files of an earlier run are gone"
@@ -280,7 +283,7 @@ unlike other-state --output "$folder/signal" --output-state "$folder/other.csv"
 
 # An error of one rank alone is reported with its number.
 code=0
-"$mpirun" --quiet --map-by :OVERSUBSCRIBE -n 1 "$ricochet" run "$scene" --output "$folder/alone-wrong" --quiet : \
+"$mpirun" "${quiet[@]}" --map-by :OVERSUBSCRIBE -n 1 "$ricochet" run "$scene" --output "$folder/alone-wrong" --quiet : \
     -n 1 "$ricochet" run "$folder/missing.json" --output "$folder/alone-wrong" --quiet >"$folder/wrong.out" 2>&1 || code=$?
 expect_end wrong 2 'rank 1 on .*: .*there is no file'
 refuse spheres 'particle_contacts: ranks: found 3, expected 1' "$scenes/granular_gas.json"
@@ -291,7 +294,7 @@ refuse verify 'verify: ranks: found 3, expected 1' "$scene" --verify
 [[ ! -e "$folder/refused" ]] || fail "what was refused has left a folder"
 code=0
 # shellcheck disable=SC2016
-"$mpirun" --quiet --map-by :OVERSUBSCRIBE -n 2 bash -c \
+"$mpirun" "${quiet[@]}" --map-by :OVERSUBSCRIBE -n 2 bash -c \
     'exec "$0" run "$1" --output "$2" --set simulation.duration=0.$((1 + OMPI_COMM_WORLD_RANK)) --quiet' \
     "$ricochet" "$scene" "$folder/different" >"$folder/different.out" 2>&1 || code=$?
 expect_end different 2 'the 2 processes have found different scenes'

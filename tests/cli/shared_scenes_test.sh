@@ -7,6 +7,9 @@
 set -euo pipefail
 ricochet="$1"
 mpirun="$2"
+# Open MPI 5 has no such option.
+quiet=()
+if "$mpirun" --quiet --version >/dev/null 2>&1; then quiet=(--quiet); fi
 scenes="$3"
 folder="$4"
 seconds="$5"
@@ -44,7 +47,7 @@ for scene in "$scenes"/*.json; do
     for count in "${counts[@]}"; do
         for each in "${threads[@]}"; do
             code=0
-            "$mpirun" --quiet --map-by :OVERSUBSCRIBE -n "$count" "$ricochet" run "$scene" --output "$folder/shared" \
+            "$mpirun" "${quiet[@]}" --map-by :OVERSUBSCRIBE -n "$count" "$ricochet" run "$scene" --output "$folder/shared" \
                 "${options[@]}" --threads "$each" >"$folder/out" 2>&1 || code=$?
             if ((count > 1 && code == 2)) && grep -q "$refusals" "$folder/out"; then
                 refused+=("$name")

@@ -159,9 +159,10 @@ TEST(BodyScene, SelfIntersectingMeshGivesAWarningIfItsVolumeCounts) {
     EXPECT_EQ(warnings(2.0), Lines{});
     const Lines crossing = warnings(0.5);
     ASSERT_EQ(crossing.size(), 1U);
-    EXPECT_NE(crossing[0].find(
-                  "frames.wheel.body: the mesh \"cubes\" crosses itself, or nests shells that are wound alike: about 3"),
-              std::string::npos)
+    EXPECT_NE(
+        crossing[0].find(
+            "frames.wheel.body: the mesh \"cubes\" crosses itself, or nests shells that are wound alike: about 3"),
+        std::string::npos)
         << crossing[0];
 }
 

@@ -1,17 +1,15 @@
 #include "ricochet/collision/broad_phase.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
 
 #include "ricochet/collision/look_ahead.h"
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {
 namespace {
-
-/// Largest number of times that a path is halved to find pieces flat enough for the boxes. Only pieces near the
-/// triangles are halved. A path that is still too curved then is tested against every triangle. Local, because only the
-/// cost depends on it.
-constexpr int kPieceDepth = 40;
 
 // Returns true if a piece of the path may come near the triangles. The margin for curvature is included because a chord
 // can begin on this piece and end on the next one.
@@ -27,43 +25,82 @@ bool may_reach_triangles(const CollisionWorld& world, const QueryMargins& margin
     return !(gap.x > 0.0 || gap.y > 0.0 || gap.z > 0.0);
 }
 
+/// A piece of a path, in s.
+struct Piece {
+    double from;
+    double to;
+};
+
+/// Divides a path into the pieces that may come near triangles, in the order of time. Each piece is flat enough for the
+/// margin of the boxes. Method: sphere tracing in the distance field finds the starts of the pieces.
+class Pieces {
+public:
+    Pieces(const CollisionWorld& world, const QueryMargins& margins, const Path& path)
+        : world_(world), path_(path), margin_(broad_phase_margin(path, margins)), left_(most_pieces(world)) {
+        if (path.degree < 2) return;
+        // A chord over a time t has a sagitta of at most t^2 / 8 times the largest acceleration.
+        longest_ = path.duration * std::sqrt(0.5 * margins.curvature / path.sagitta(0.0, path.duration)) * kShorter;
+    }
+
+    /// Returns the first piece from a time on, or nothing if the path stays clear until its end or if too many pieces
+    /// are needed.
+    std::optional<Piece> next(double from) {
+        if (path_.degree > 1) from = time_clear_of_field(path_, world_.distance_field(), margin_, from);
+        if (!(from < path_.duration) || !has_next()) return std::nullopt;
+        --left_;
+        return Piece{from, from + longest_ < path_.duration ? from + longest_ : path_.duration};
+    }
+    /// Returns false if so many pieces have been returned that a test of all triangles is cheaper.
+    [[nodiscard]] bool has_next() const { return left_ > 0; }
+
+private:
+    /// Factor that covers the rounding of the longest duration. Local: an error bound of this arithmetic.
+    static constexpr double kShorter = 1.0 - 0x1p-40;
+    /// Least number of pieces before all triangles are tested instead. Local, because only the cost depends on it.
+    static constexpr std::size_t kMostPieces = 64;
+
+    static std::size_t most_pieces(const CollisionWorld& world) {
+        return std::max(kMostPieces, world.triangles().size());
+    }
+
+    const CollisionWorld& world_;
+    const Path& path_;
+    double margin_;
+    double longest_ = std::numeric_limits<double>::infinity();  ///< in s, of a piece
+    std::size_t left_;
+};
+
 /// Tests one path against the bounding volume hierarchy, piece by piece.
 struct PieceQuery {
     const CollisionWorld& world;
     const QueryMargins& margins;
     const Path& path;
     NarrowPhase& narrow_phase;
-    CandidateSet candidates = CandidateSet::near;
 
     void test_all() {
-        candidates = CandidateSet::all;
         for (std::uint32_t triangle = 0; triangle < world.triangles().size(); ++triangle) {
             (void)narrow_phase.test_triangle(triangle);
         }
     }
 
     // Visits pieces in the order of time, so a contact ends the query.
-    void test_piece(double from, double to, int depth) {
-        if (from > narrow_phase.first_time() || candidates == CandidateSet::all) return;
-        if (path.degree == 2) {
-            const double clear =
-                time_clear_of_field(path, world.distance_field(), broad_phase_margin(path, margins), from);
-            if (clear > from && clear >= to) return;
-            from = clear;
+    CandidateSet test_near() {
+        Pieces pieces(world, margins, path);
+        double from = 0.0;
+        while (from <= narrow_phase.first_time()) {
+            const std::optional<Piece> piece = pieces.next(from);
+            if (!piece) break;
+            query_piece(*piece);
+            from = piece->to;
         }
-        if (covers_chord(world, margins, path, from, to)) {
-            query_chord(from, to);
-        } else if (depth == 0) {
-            test_all();
-        } else {
-            const double middle = 0.5 * (from + to);
-            test_piece(from, middle, depth - 1);
-            test_piece(middle, to, depth - 1);
-        }
+        if (pieces.has_next()) return CandidateSet::near;
+        test_all();
+        return CandidateSet::all;
     }
 
     // The tube also covers chords of the path that covers_chord() accepts.
-    void query_chord(double from, double to) {
+    void query_piece(const Piece& piece) {
+        const auto [from, to] = piece;
         const double span = to - from;
         const bool is_parabola = path.degree == 2;
         const double beside_piece = is_parabola ? 0.0 : path.sagitta(from, to);
@@ -84,14 +121,12 @@ struct PieceQuery {
 CandidateSet test_triangles_near(const CollisionWorld& world, const QueryMargins& margins, const Path& path,
                                  NarrowPhase& narrow_phase) {
     PieceQuery query{world, margins, path, narrow_phase};
-    if (world.culls() && margins.boxes_hold) {
-        query.test_piece(0.0, path.duration, kPieceDepth);
-    } else if (!world.culls() || may_reach_triangles(world, margins, path, 0.0, path.duration)) {
-        query.test_all();
-    }
-    // Without culling, the result is `near` too, because the chords that a particle follows must not depend on culling.
-    if (!world.culls() && margins.boxes_hold) return CandidateSet::near;
-    return query.candidates;
+    if (world.culls() && margins.boxes_hold) return query.test_near();
+    const bool is_tested = !world.culls() || may_reach_triangles(world, margins, path, 0.0, path.duration);
+    if (is_tested) query.test_all();
+    // Without culling, the result is `near` if the boxes hold, because the chords that a particle follows must not
+    // depend on culling.
+    return is_tested && !margins.boxes_hold ? CandidateSet::all : CandidateSet::near;
 }
 
 namespace {
@@ -103,25 +138,23 @@ struct ClearQuery {
     const Path& path;
     double until;  ///< in s: end of the search before the query, result after it
 
-    void test_piece(double from, double to, int depth) {
-        if (from >= until) return;
-        const double margin = broad_phase_margin(path, margins);
-        if (path.degree > 1) from = std::max(from, time_clear_of_field(path, world.distance_field(), margin, from));
-        if (from >= std::min(to, until)) return;
-        if (covers_chord(world, margins, path, from, to)) {
-            query_chord(from, to, margin);
-        } else if (depth == 0) {
-            until = from;
-        } else {
-            const double middle = 0.5 * (from + to);
-            test_piece(from, middle, depth - 1);
-            test_piece(middle, to, depth - 1);
+    void run() {
+        Pieces pieces(world, margins, path);
+        double from = 0.0;
+        while (from < until) {
+            const std::optional<Piece> piece = pieces.next(from);
+            if (!piece) break;
+            query_piece(*piece);
+            from = piece->to;
         }
+        if (!pieces.has_next()) until = std::min(until, from);
     }
 
-    void query_chord(double from, double to, double margin) {
+    void query_piece(const Piece& piece) {
+        const auto [from, to] = piece;
         const double span = to - from;
-        const Tube tube(path.position(from), path.position(to), margin + path.sagitta(from, to));
+        const double margin = broad_phase_margin(path, margins) + path.sagitta(from, to);
+        const Tube tube(path.position(from), path.position(to), margin);
         margins.bvh->query_tube(tube, [&](std::uint32_t triangle, double enter, double /*leave*/) {
             if (!world.is_degenerate(triangle)) until = std::min(until, from + enter * span);
             return until < to ? std::max(0.0, (until - from) / span) : 1.0;
@@ -134,7 +167,7 @@ double time_clear_of_triangles(const CollisionWorld& world, const QueryMargins& 
     if (world.triangles().empty() || !may_reach_triangles(world, margins, path, 0.0, until)) return until;
     if (!margins.boxes_hold) return 0.0;
     ClearQuery query{world, margins, path, until};
-    query.test_piece(0.0, until, kPieceDepth);
+    query.run();
     return query.until;
 }
 

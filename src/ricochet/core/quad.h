@@ -8,6 +8,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -39,9 +41,17 @@ struct Quad {
 [[nodiscard]] RICOCHET_INLINE Quad load_quad(const double* from) {
     return {*reinterpret_cast<const Quad::Stored*>(from)};
 }
+[[nodiscard]] RICOCHET_INLINE Quad load_quad(const std::array<float, 4>& from) {
+    using Floats = float __attribute__((vector_size(16)));
+    return {__builtin_convertvector(std::bit_cast<Floats>(from), Quad::Lanes)};
+}
 RICOCHET_INLINE void store(const Quad& a, double* to) { *reinterpret_cast<Quad::Stored*>(to) = a.lanes; }
 
-[[nodiscard]] RICOCHET_INLINE Quad quad_of(double all) { return {Quad::Lanes{all, all, all, all}}; }
+/// Returns four equal numbers. A list of them would be built in two halves by GCC.
+[[nodiscard]] RICOCHET_INLINE Quad quad_of(double all) {
+    const Quad::Lanes one{all};
+    return {__builtin_shufflevector(one, one, 0, 0, 0, 0)};
+}
 
 [[nodiscard]] RICOCHET_INLINE Quad operator+(const Quad& a, const Quad& b) { return {a.lanes + b.lanes}; }
 [[nodiscard]] RICOCHET_INLINE Quad operator-(const Quad& a, const Quad& b) { return {a.lanes - b.lanes}; }
@@ -57,9 +67,16 @@ RICOCHET_INLINE void store(const Quad& a, double* to) { *reinterpret_cast<Quad::
 [[nodiscard]] RICOCHET_INLINE QuadMask operator<(const Quad& a, const Quad& b) { return {a.lanes < b.lanes}; }
 [[nodiscard]] RICOCHET_INLINE QuadMask operator>(const Quad& a, const Quad& b) { return {a.lanes > b.lanes}; }
 [[nodiscard]] RICOCHET_INLINE QuadMask operator&(const QuadMask& a, const QuadMask& b) { return {a.lanes & b.lanes}; }
+[[nodiscard]] RICOCHET_INLINE QuadMask operator|(const QuadMask& a, const QuadMask& b) { return {a.lanes | b.lanes}; }
 /// Returns true if a lane is true.
 [[nodiscard]] RICOCHET_INLINE bool any(const QuadMask& a) {
     return (a.lanes[0] | a.lanes[1] | a.lanes[2] | a.lanes[3]) != 0;
+}
+
+/// Returns one bit for each lane, set if the lane is true.
+[[nodiscard]] RICOCHET_INLINE unsigned bits_of(const QuadMask& a) {
+    const auto bits = QuadMask{a.lanes & decltype(a.lanes){1, 2, 4, 8}}.lanes;
+    return static_cast<unsigned>(bits[0] | bits[1] | bits[2] | bits[3]);
 }
 
 /// Returns a if the mask is true, else b, per lane.
@@ -68,6 +85,14 @@ RICOCHET_INLINE void store(const Quad& a, double* to) { *reinterpret_cast<Quad::
 }
 /// Returns the larger number per lane, with the semantics of std::max().
 [[nodiscard]] RICOCHET_INLINE Quad larger(const Quad& a, const Quad& b) { return select(a < b, b, a); }
+/// Returns the smaller number per lane, with the semantics of std::min().
+[[nodiscard]] RICOCHET_INLINE Quad smaller(const Quad& a, const Quad& b) { return select(b < a, b, a); }
+[[nodiscard]] RICOCHET_INLINE Quad abs(const Quad& a) {
+    using Bits = std::int64_t __attribute__((vector_size(32)));
+    constexpr std::int64_t kMagnitude = 0x7FFFFFFFFFFFFFFF;
+    return {reinterpret_cast<Quad::Lanes>(reinterpret_cast<Bits>(a.lanes) &
+                                          Bits{kMagnitude, kMagnitude, kMagnitude, kMagnitude})};
+}
 [[nodiscard]] RICOCHET_INLINE Quad root(const Quad& a) {
     // GCC turns four std::sqrt() into four calls, since they may set errno.
 #if __has_builtin(__builtin_elementwise_sqrt)

@@ -43,26 +43,29 @@ std::vector<std::uint32_t> in_spatial_order(std::span<const Vec3> vertices, std:
     return order;
 }
 
-std::int16_t nearest_number(double x) { return static_cast<std::int16_t>(std::min(std::lrint(x), 32767L)); }
+/// Returns the length of a triangle's longest edge, in m, rounded up. It is infinite beyond the range of floats.
+float longest_edge(std::span<const Vec3> vertices, const Triangle& triangle) {
+    const auto& [a, b, c] = triangle;
+    const double longest = std::max(
+        {length(vertices[b] - vertices[a]), length(vertices[c] - vertices[b]), length(vertices[a] - vertices[c])});
+    const double rounded = std::min(longest * (1.0 + 0x1p-40), double{std::numeric_limits<float>::max()});
+    return std::nextafterf(static_cast<float>(rounded), std::numeric_limits<float>::infinity());
+}
 
 TriangleCluster cluster_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
                            std::span<const std::uint32_t> members) {
-    Box3 box;
-    for (const std::uint32_t triangle : members) box.include(box_of(vertices, triangles[triangle]));
     TriangleCluster cluster;
-    cluster.center = box.center();
-    const double extent = max_abs(box.size());
-    if (extent > 0.0) cluster.per_unit = 2.0 * TriangleCluster::kExtent * std::ldexp(1.0, -std::ilogb(extent) - 1);
     for (std::size_t lane = 0; lane < 4; ++lane) {
-        const bool is_there = lane < members.size();
-        const std::uint32_t triangle = members[is_there ? lane : 0];
-        cluster.triangle[lane] = is_there ? triangle : kNoTriangle;
+        const bool is_used = lane < members.size();
+        const std::uint32_t triangle = members[is_used ? lane : 0];
+        cluster.triangle[lane] = is_used ? triangle : kNoTriangle;
         for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3 corner = cluster.per_unit * (vertices[triangles[triangle][k]] - cluster.center);
-            cluster.x[k][lane] = nearest_number(corner.x);
-            cluster.y[k][lane] = nearest_number(corner.y);
-            cluster.z[k][lane] = nearest_number(corner.z);
+            const Vec3& corner = vertices[triangles[triangle][k]];
+            cluster.corners[k][0][lane] = corner.x;
+            cluster.corners[k][1][lane] = corner.y;
+            cluster.corners[k][2][lane] = corner.z;
         }
+        cluster.edge[lane] = longest_edge(vertices, triangles[triangle]);
     }
     return cluster;
 }

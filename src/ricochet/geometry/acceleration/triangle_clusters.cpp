@@ -1,299 +1,290 @@
 #include "ricochet/geometry/acceleration/triangle_clusters.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <limits>
 
-#include "ricochet/core/box3.h"
-#include "ricochet/core/parallel.h"
+#include "ricochet/core/quad.h"
 
 namespace ricochet {
 namespace {
 
-constexpr float kExtent = TriangleCluster::kExtent;
+/// Bound on the rounding of every quantity below, relative to the product of the bounds on its factors: at most forty
+/// roundings of 2^-53. Local: an error bound of this arithmetic.
+constexpr double kRounding = 0x1p-46;
 
-/// Bound on the difference between a corner and its quantised position, in units of the cluster. Along an axis the
-/// difference is at most half a unit, or one unit at the largest number, which is not a power of two. Local: an error
-/// bound of this arithmetic.
-constexpr double kCornerRounding = 2.0;
+/// Factor for the rounding of lengths and margins. Local: an error bound of this arithmetic.
+constexpr double kLengthRounding = 1.0 + 0x1p-40;
 
-/// Rounding of the height above a triangle's plane, times the length of its normal, in single precision. There are
-/// about sixty roundings of 2^-24, and edges are at most two extents long. Local: an error bound of this arithmetic.
-constexpr float kHeightRounding = 0x1p-17F * (2.0F * kExtent) * (2.0F * kExtent);
+/// Least squared length, in m^2, with a reciprocal far inside the range of doubles. Local: a guard against its end.
+constexpr double kLeastSquare = 1e-280;
 
-/// Rounding of twice a projected area, in squares of the largest coordinate: about thirty roundings of 2^-24. Local: an
-/// error bound of this arithmetic.
-constexpr float kAreaRounding = 0x1p-18F;
+/// Relative rounding of a fraction of a path. Local: an error bound of this arithmetic.
+constexpr double kFractionRounding = 0x1p-44;
 
-/// Length below which directions count as zero, because their reciprocal would leave the range of doubles. Local: a
-/// guard against the end of the range of doubles.
-constexpr double kShortestDirection = 1e-290;
+/// Numbers that cover the underflow of squares, in m or m^2, and of products of three lengths, in m^3. Local: guards
+/// against the end of the range of doubles.
+constexpr double kRootUnderflow = 1e-150;
+constexpr double kVolumeUnderflow = 1e-300;
 
-/// Relative rounding of a fraction of a path, which is a quotient of heights in single precision. Local: an error bound
-/// of this arithmetic.
-constexpr float kFractionRounding = 0x1p-20F;
+double size_of(const Vec3& a) { return std::fabs(a.x) + std::fabs(a.y) + std::fabs(a.z); }
 
-/// Largest reciprocal length, in 1/m, of a segment that is clipped to a cluster. The squared length of a shorter
-/// segment would leave the range of doubles. Local: a guard against the end of the range of doubles.
-constexpr double kMaxPerLength = 1e140;
-
-// Vectors of four numbers (vector extensions of GCC and Clang). They fill one register of every 64-bit processor.
-using Quad = float __attribute__((vector_size(16)));
-using Mask = int __attribute__((vector_size(16)));
-
-struct QuadVec {
-    Quad x;
-    Quad y;
-    Quad z;
-};
-
-// Converts four numbers to single precision. The sign extension by an arithmetic shift takes three instructions on all
-// 64-bit processors.
-Quad loaded(const TriangleCluster::Lanes& lanes) {
-    using Numbers = std::int16_t __attribute__((vector_size(16)));
-    const auto numbers = std::bit_cast<Numbers>(std::array{std::bit_cast<std::uint64_t>(lanes), std::uint64_t{0}});
-    const Numbers doubled = __builtin_shufflevector(numbers, numbers, 0, 0, 1, 1, 2, 2, 3, 3);
-    return __builtin_convertvector(std::bit_cast<Mask>(doubled) >> 16, Quad);
-}
-
-QuadVec operator-(const QuadVec& a, const QuadVec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-
-QuadVec cross(const QuadVec& a, const QuadVec& b) {
+/// Four vectors and one vector for all lanes.
+RICOCHET_INLINE Quad dot(const Vec3& a, const QuadVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+RICOCHET_INLINE QuadVec3 cross(const Vec3& a, const QuadVec3& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-Quad dot(const QuadVec& a, const QuadVec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+RICOCHET_INLINE Quad length_of(const QuadVec3& a) { return root(length_squared(a)) + quad_of(kRootUnderflow); }
+RICOCHET_INLINE Quad size_of(const QuadVec3& a) { return abs(a.x) + abs(a.y) + abs(a.z); }
 
-Quad dot(const QuadVec& a, const std::array<float, 3>& b) { return a.x * b[0] + a.y * b[1] + a.z * b[2]; }
-
-Quad abs(const Quad& a) { return std::bit_cast<Quad>(std::bit_cast<Mask>(a) & 0x7FFFFFFF); }
-
-Quad min(const Quad& a, const Quad& b) { return a < b ? a : b; }
-
-Quad max(const Quad& a, const Quad& b) { return a > b ? a : b; }
-
-/// Returns |x| + |y| + |z|, which is at least the length and at most sqrt(3) times the length.
-Quad size_of(const QuadVec& a) { return abs(a.x) + abs(a.y) + abs(a.z); }
-
-/// The chord of the part of a path that passes a cluster, in the cluster's units.
-struct LocalSegment {
-    double begin;  ///< fractions of the whole path
-    double end;
-    Vec3 start;  ///< from the centre
-    Vec3 chord;
-    double width;               ///< the margin
-    std::array<float, 3> from;  ///< start, chord and width in single precision
-    std::array<float, 3> along;
-    float margin;
-    float size;  ///< upper bound on all numbers here and on differences to the corners
+/// Lowest and highest number of each lane.
+struct QuadRange {
+    Quad low;
+    Quad high;
 };
 
-/// Factor for the remaining rounding of the margin, which is far below the rounding of the bounds. Local: an error
-/// bound of this arithmetic.
-constexpr double kMarginRounding = 1.0 + 0x1p-20;
+RICOCHET_INLINE QuadRange range_of(const Quad& a, const Quad& b) { return {smaller(a, b), larger(a, b)}; }
+RICOCHET_INLINE QuadRange range_of(const Quad& a, const Quad& b, const Quad& c) {
+    return {smaller(smaller(a, b), c), larger(larger(a, b), c)};
+}
+/// Four triangles (a, b, c), relative to the start of a path.
+struct QuadTriangle {
+    QuadVec3 a, b, c;
+    Quad edge;   ///< bound on the edges' lengths, in m
+    Quad reach;  ///< bound on the sum of the magnitudes of each corner's components, in m
+};
 
-/// Returns the part of a path that can be within the margin of a triangle. All its points are within twice the extent
-/// plus the margin from the cluster's centre. The part is empty (begin > end) if no point is that near. The sagitta of
-/// the part is the path's sagitta times the square of the part's share of the path.
-LocalSegment localized(const TriangleCluster& cluster, const Tube& tube) {
-    LocalSegment local{0.0, 1.0, {}, {}, 0.0, {}, {}, 0.0F, 0.0F};
-    const Vec3 offset = cluster.center - tube.from;
-    if (tube.per_length < kMaxPerLength) {
-        const double middle = dot(offset, tube.along) * tube.per_length * tube.per_length;
-        const double margin = (tube.margin + tube.sagitta) * kMarginRounding;
-        const double half = (2.0 * kExtent / cluster.per_unit + margin) * tube.per_length;
-        local.begin = std::max(0.0, middle - half);
-        local.end = std::min(1.0, middle + half);
+/// The part of a path that passes each triangle, as seen along the chord.
+struct PathPart {
+    Quad begin, end;  ///< in fractions of the path
+    QuadRange bow;    ///< of f (1 - f); only for curved paths
+};
+
+/// Heights of the path's part above the planes of four triangles, times the lengths of their normals.
+struct QuadHeights {
+    QuadVec3 normal;
+    Quad begin, end;  ///< at the ends of the part
+    Quad bulge;       ///< between the part and its chord; only for curved paths
+    Quad rounding;
+    Quad most;  ///< bound within which the tube may touch the triangles
+};
+
+RICOCHET_INLINE QuadVec3 corner_of(const TriangleCluster& cluster, std::size_t k) {
+    const auto& [x, y, z] = cluster.corners[k];
+    return {load_quad(x.data()), load_quad(y.data()), load_quad(z.data())};
+}
+
+RICOCHET_INLINE QuadTriangle seen_from(const Vec3& p, const TriangleCluster& cluster) {
+    const QuadVec3 origin{quad_of(p.x), quad_of(p.y), quad_of(p.z)};
+    QuadTriangle seen;
+    seen.a = corner_of(cluster, 0) - origin;
+    seen.b = corner_of(cluster, 1) - origin;
+    seen.c = corner_of(cluster, 2) - origin;
+    seen.edge = load_quad(cluster.edge);
+    seen.reach = size_of(seen.a) + 2.0 * seen.edge;
+    return seen;
+}
+
+/// Returns the range of f (1 - f) for f in [begin, end].
+RICOCHET_INLINE QuadRange bow_of(const Quad& begin, const Quad& end) {
+    const Quad half = quad_of(0.5);
+    QuadRange bow = range_of(begin * (quad_of(1.0) - begin), end * (quad_of(1.0) - end));
+    bow.high = select((begin < half) & (end > half), quad_of(0.25), bow.high);
+    return bow;
+}
+
+/// Returns the part of the path that can be near each triangle. It is empty (begin > end) for triangles that are
+/// certainly before or beyond the path.
+RICOCHET_INLINE PathPart part_along(const QuadTriangle& triangle, const Tube& tube) {
+    PathPart part{quad_of(0.0), quad_of(1.0), {}};
+    if (tube.per_squared_length > 0.0) {
+        const auto [nearest, farthest] =
+            range_of(dot(tube.along, triangle.a), dot(tube.along, triangle.b), dot(tube.along, triangle.c));
+        const Quad beside = quad_of(tube.beside) + tube.rounding * triangle.reach;
+        const Quad low = tube.per_squared_length * (nearest - beside - quad_of(tube.most_ahead));
+        const Quad high = tube.per_squared_length * (farthest + beside - quad_of(tube.least_ahead));
+        part.begin = select(low > 0.0, low, part.begin);
+        part.end = select(high < part.end, high, part.end);
     }
-    const double share = local.end - local.begin;
-    const Vec3 begin = tube.offset(local.begin);
-    const Vec3 from = local.start = cluster.per_unit * (begin - offset);
-    const Vec3 along = local.chord = cluster.per_unit * (tube.offset(local.end) - begin);
-    const double margin = tube.margin + share * share * tube.sagitta;
-    local.width = kCornerRounding + cluster.per_unit * margin * kMarginRounding;
-    local.margin = static_cast<float>(local.width);
-    local.from = {static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)};
-    local.along = {static_cast<float>(along.x), static_cast<float>(along.y), static_cast<float>(along.z)};
-    local.size = 2.0F * kExtent + static_cast<float>(max_abs(from) + max_abs(along));
-    return local;
+    part.bow = tube.is_straight ? QuadRange{part.begin, part.begin} : bow_of(part.begin, part.end);
+    return part;
 }
 
-/// The axes of the projection by a shear along kAxis.
-template <int kAxis>
-struct Projection {
-    static constexpr int kRight = (kAxis + 1) % 3;
-    static constexpr int kUp = (kAxis + 2) % 3;
-};
-
-/// A path projected along its own direction to a point, relative to a cluster's centre and in the cluster's units.
-struct View {
-    float right;  ///< of the shear
-    float up;
-    float x;  ///< to the right
-    float y;  ///< up
-    float margin;
-    float size;  ///< upper bound on all numbers here and on differences to the corners
-};
-
-/// Projects a path along the shear to a point. point: a point of the path, relative to the cluster's centre. extent:
-/// bound on the path's extent beyond this point; 0 for a path that is not clipped to the cluster.
-template <int kAxis>
-View view_along(const Vec3& point, const Shear& shear, double margin, float extent) {
-    using Axes = Projection<kAxis>;
-    View view{static_cast<float>(shear.right),
-              static_cast<float>(shear.up),
-              static_cast<float>(point[Axes::kRight] - shear.right * point[kAxis]),
-              static_cast<float>(point[Axes::kUp] - shear.up * point[kAxis]),
-              static_cast<float>(margin * (shear.norm * kMarginRounding)),
-              0.0F};
-    view.size = 4.0F * kExtent + view.margin + std::fabs(view.x) + std::fabs(view.y) + extent;
-    return view;
-}
-
-bool is_empty(const Mask& mask) {
-    const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(mask);
-    return (halves[0] | halves[1]) == 0;
-}
-
-struct QuadPoint {
-    Quad x;
-    Quad y;
-};
-
-/// Twice the signed area of the triangle of the origin and an edge, and a bound. If the area differs from 0 by more
-/// than the bound, the origin is certainly more than the margin on one side of the edge.
-struct EdgeSide {
-    Quad area;
-    Quad bound;
-};
-
-EdgeSide side_of_edge(const QuadPoint& from, const QuadPoint& to, const View& view, float rounding) {
-    const Quad length = abs(to.x - from.x) + abs(to.y - from.y);
-    return {from.x * to.y - from.y * to.x, view.margin * length + rounding};
-}
-
-template <int kAxis>
-const std::array<TriangleCluster::Lanes, 3>& coordinates(const TriangleCluster& cluster) {
-    return kAxis == 0 ? cluster.x : (kAxis == 1 ? cluster.y : cluster.z);
-}
-
-// The projected triangle misses the path's point if the point is certainly beyond one of its edges or outside its box.
-// The test does not depend on the winding. The three signed areas add up to the area of the triangle. For a point
-// beyond an edge, one of them therefore has a sign that the other two do not have. For a triangle that projects to a
-// line, the box decides.
-template <int kAxis>
-Mask lanes_of(const TriangleCluster& cluster, const View& view) {
-    using Axes = Projection<kAxis>;
-    std::array<QuadPoint, 3> corner;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Quad depth = loaded(coordinates<kAxis>(cluster)[k]);
-        corner[k].x = loaded(coordinates<Axes::kRight>(cluster)[k]) - view.right * depth - view.x;
-        corner[k].y = loaded(coordinates<Axes::kUp>(cluster)[k]) - view.up * depth - view.y;
+/// Returns the lanes that the tube certainly passes outside an edge. The volume of an edge and two points of a line has
+/// the sign of the side on which the line passes the edge. The volumes of the three edges add up to a number that has
+/// the right sign. So a line beyond an edge has volumes of both signs, whatever the winding. For a curved path, the
+/// line is parallel to the chord, and the volumes are those of all its positions.
+RICOCHET_INLINE QuadMask misses_edges(const QuadTriangle& triangle, const PathPart& part, const Tube& tube) {
+    const auto& [a, b, c, edge, reach] = triangle;
+    const QuadVec3 along_a = cross(tube.along, a);
+    const QuadVec3 along_b = cross(tube.along, b);
+    const Quad ab = dot(along_a, b);
+    const Quad bc = dot(along_b, c);
+    const Quad ca = -dot(along_a, c);
+    const Quad bound =
+        tube.beside * edge + tube.rounding * (reach * (reach + quad_of(tube.size))) + quad_of(kVolumeUnderflow);
+    QuadRange of_ab{ab, ab};
+    QuadRange of_bc{bc, bc};
+    QuadRange of_ca{ca, ca};
+    if (!tube.is_straight) {
+        const Vec3 across = cross(tube.along, tube.curve);
+        const auto& [low, high] = part.bow;
+        const Quad change_ab = dot(across, b - a);
+        const Quad change_bc = dot(across, c - b);
+        const Quad change_ca = -(change_ab + change_bc);
+        of_ab = range_of(ab + change_ab * low, ab + change_ab * high);
+        of_bc = range_of(bc + change_bc * low, bc + change_bc * high);
+        of_ca = range_of(ca + change_ca * low, ca + change_ca * high);
     }
-    const auto& [a, b, c] = corner;
-    const float rounding = kAreaRounding * view.size * view.size;
-    const EdgeSide ab = side_of_edge(a, b, view, rounding);
-    const EdgeSide bc = side_of_edge(b, c, view, rounding);
-    const EdgeSide ca = side_of_edge(c, a, view, rounding);
-    const Quad none{};
-    const Mask beyond = (min(min(ab.area + ab.bound, bc.area + bc.bound), ca.area + ca.bound) < none) &
-                        (max(max(ab.area - ab.bound, bc.area - bc.bound), ca.area - ca.bound) > none);
-    const float near = view.margin + kAreaRounding * view.size;
-    const Mask outside_box = (min(min(a.x, b.x), c.x) > near) | (max(max(a.x, b.x), c.x) < -near) |
-                             (min(min(a.y, b.y), c.y) > near) | (max(max(a.y, b.y), c.y) < -near);
-    return ~(beyond | outside_box);
+    const Quad least = smaller(smaller(of_ab.high, of_bc.high), of_ca.high);
+    const Quad most = larger(larger(of_ab.low, of_bc.low), of_ca.low);
+    return (least < -bound) & (most > bound);
 }
 
-/// Returns the lanes that may be near a path along the shear. Straight paths need not be clipped to the cluster first,
-/// because the whole line projects to one point.
-Mask projected_lanes(const TriangleCluster& cluster, const Vec3& point, const Shear& shear, double margin,
-                     float extent) {
-    switch (shear.axis) {
-        case 0:
-            return lanes_of<0>(cluster, view_along<0>(point, shear, margin, extent));
-        case 1:
-            return lanes_of<1>(cluster, view_along<1>(point, shear, margin, extent));
-        default:
-            return lanes_of<2>(cluster, view_along<2>(point, shear, margin, extent));
+RICOCHET_INLINE QuadHeights heights_above(const TriangleCluster& cluster, const QuadTriangle& triangle,
+                                          const PathPart& part, const Tube& tube) {
+    const QuadVec3 corner = corner_of(cluster, 0);
+    QuadHeights heights;
+    heights.normal = cross(corner_of(cluster, 1) - corner, corner_of(cluster, 2) - corner);
+    const Quad start = dot(heights.normal, triangle.a);
+    const Quad slope = dot(tube.along, heights.normal);
+    heights.begin = part.begin * slope - start;
+    heights.end = part.end * slope - start;
+    heights.bulge = quad_of(0.0);
+    if (!tube.is_straight) {
+        const Quad curve = dot(tube.curve, heights.normal);
+        const Quad span = part.end - part.begin;
+        heights.begin = heights.begin - part.begin * (quad_of(1.0) - part.begin) * curve;
+        heights.end = heights.end - part.end * (quad_of(1.0) - part.end) * curve;
+        heights.bulge = 0.25 * (span * span * curve);
     }
+    heights.rounding =
+        kRounding * (triangle.edge * triangle.edge * (triangle.reach + quad_of(tube.size))) + quad_of(kVolumeUnderflow);
+    heights.most = tube.margin * length_of(heights.normal) + heights.rounding;
+    return heights;
 }
 
-// The tube can touch a triangle only while the chord is within the margin of the triangle's plane. All comparisons
-// avoid division by the normal's length, so slivers only make the bound larger.
-unsigned overlapping_lanes(const TriangleCluster& cluster, const LocalSegment& segment, const Mask& projected,
-                           TubeIntervals& intervals) {
-    const QuadVec a{loaded(cluster.x[0]), loaded(cluster.y[0]), loaded(cluster.z[0])};
-    const QuadVec ab = QuadVec{loaded(cluster.x[1]), loaded(cluster.y[1]), loaded(cluster.z[1])} - a;
-    const QuadVec ac = QuadVec{loaded(cluster.x[2]), loaded(cluster.y[2]), loaded(cluster.z[2])} - a;
-    const QuadVec normal = cross(ab, ac);
-    const float rounding = kHeightRounding * segment.size;
-    const Quad bound = segment.margin * size_of(normal) + rounding;
-    const QuadVec start{segment.from[0] - a.x, segment.from[1] - a.y, segment.from[2] - a.z};
-    const Quad height = dot(normal, start);
-    const Quad slope = dot(normal, segment.along);
-    const Quad per_slope = 1.0F / slope;
-    const Quad first = (-bound - height) * per_slope;
-    const Quad second = (bound - height) * per_slope;
-    const Quad none{};
-    const Quad lower = min(first, second);
-    const Quad upper = max(first, second);
-    // If the slope is zero within rounding, no interval can be computed.
-    const Mask is_level = abs(slope) <= rounding;
-    const Quad enter = is_level ? none : max(lower - kFractionRounding * abs(lower), none);
-    const Quad leave = is_level ? none + 1.0F : min(upper + kFractionRounding * abs(upper), none + 1.0F);
-    const Mask near = projected & (is_level ? abs(height) <= bound + 2.0F * rounding : enter <= leave);
-    const double span = segment.end - segment.begin;
+/// Returns the lanes whose planes the path certainly does not reach.
+RICOCHET_INLINE QuadMask misses_plane(const QuadHeights& heights) {
+    const QuadRange ends = range_of(heights.begin, heights.end);
+    const Quad low = ends.low - larger(heights.bulge, quad_of(0.0));
+    const Quad high = ends.high - smaller(heights.bulge, quad_of(0.0));
+    return (low > heights.most) | (high < -heights.most);
+}
+
+/// Returns the lanes that the tube certainly passes sideways: in the direction that is in the triangle's plane and
+/// perpendicular to the chord.
+RICOCHET_INLINE QuadMask misses_sideways(const QuadTriangle& triangle, const QuadHeights& heights, const PathPart& part,
+                                         const Tube& tube) {
+    const QuadVec3 side = cross(tube.along, heights.normal);
+    const QuadRange corners = range_of(dot(side, triangle.a), dot(side, triangle.b), dot(side, triangle.c));
+    const Quad bound = tube.margin * size_of(side) + tube.size * heights.rounding + quad_of(kVolumeUnderflow);
+    QuadRange path{quad_of(0.0), quad_of(0.0)};
+    if (!tube.is_straight) {
+        const Quad curve = -dot(tube.curve, side);
+        path = range_of(curve * part.bow.low, curve * part.bow.high);
+    }
+    return (corners.low > path.high + bound) | (corners.high < path.low - bound);
+}
+
+/// Writes the intervals in which the path is within the margin of the planes.
+RICOCHET_INLINE void write_intervals(const QuadHeights& heights, const PathPart& part, TubeIntervals& intervals) {
+    const Quad slope = heights.end - heights.begin;
+    const Quad per_slope = 1.0 / slope;
+    const Quad most = heights.most + abs(heights.bulge);
+    const QuadRange near = range_of((-most - heights.begin) * per_slope, (most - heights.begin) * per_slope);
+    const QuadMask is_inclined = abs(slope) > heights.rounding;
+    const Quad one = quad_of(1.0);
+    const Quad low = near.low - kFractionRounding * (one + abs(near.low));
+    const Quad high = near.high + kFractionRounding * (one + abs(near.high));
+    const Quad first = select(is_inclined & (low > 0.0), smaller(low, one), quad_of(0.0));
+    const Quad last = select(is_inclined & (high < one), larger(high, quad_of(0.0)), one);
+    const Quad span = part.end - part.begin;
+    store((1.0 - kFractionRounding) * (part.begin + first * span), intervals.enter.data());
+    store(smaller((1.0 + kFractionRounding) * (part.begin + last * span), one), intervals.leave.data());
+}
+
+RICOCHET_INLINE unsigned used_lanes(const TriangleCluster& cluster) {
     unsigned bits = 0;
-    for (unsigned lane = 0; lane < 4; ++lane) {
-        if (near[lane] == 0 || cluster.triangle[lane] == kNoTriangle) continue;
-        bits |= 1U << lane;
-        intervals.enter[lane] = segment.begin + static_cast<double>(enter[lane]) * span;
-        intervals.leave[lane] = segment.begin + static_cast<double>(leave[lane]) * span;
-    }
+    for (std::size_t lane = 0; lane < 4; ++lane) bits |= cluster.triangle[lane] != kNoTriangle ? 1U << lane : 0U;
     return bits;
+}
+
+/// Tests four triangles for directions that separate them from the tube.
+RICOCHET_INLINE unsigned overlapping_lanes(const TriangleCluster& cluster, const Tube& tube, TubeIntervals& intervals) {
+    const QuadTriangle triangle = seen_from(tube.from, cluster);
+    const PathPart part = part_along(triangle, tube);
+    const QuadMask beside = (part.begin > part.end) | misses_edges(triangle, part, tube);
+    unsigned left = ~bits_of(beside) & 0xFU;
+    if (left == 0) return 0;
+    const QuadHeights heights = heights_above(cluster, triangle, part, tube);
+    left &= used_lanes(cluster) & ~bits_of(misses_plane(heights) | misses_sideways(triangle, heights, part, tube));
+    if (left != 0) write_intervals(heights, part, intervals);
+    return left;
+}
+
+unsigned overlapping_baseline(const TriangleCluster& cluster, const Tube& tube, TubeIntervals& intervals) {
+    return overlapping_lanes(cluster, tube, intervals);
+}
+
+#if defined(__x86_64__)
+[[gnu::target("avx2")]] unsigned overlapping_avx2(const TriangleCluster& cluster, const Tube& tube,
+                                                  TubeIntervals& intervals) {
+    return overlapping_lanes(cluster, tube, intervals);
+}
+
+[[gnu::target("avx512vl")]] unsigned overlapping_avx512(const TriangleCluster& cluster, const Tube& tube,
+                                                        TubeIntervals& intervals) {
+    return overlapping_lanes(cluster, tube, intervals);
+}
+#endif
+
+using Version = unsigned (*)(const TriangleCluster&, const Tube&, TubeIntervals&);
+
+Version version_for(VectorUnit unit) {
+#if defined(__x86_64__)
+    if (unit == VectorUnit::avx512) return overlapping_avx512;
+    if (unit == VectorUnit::avx2) return overlapping_avx2;
+#endif
+    static_cast<void>(unit);
+    return overlapping_baseline;
 }
 
 }  // namespace
 
-Shear::Shear(const Vec3& direction) {
-    const Vec3 size = abs(direction);
-    axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
-    if (!(size[axis] > kShortestDirection)) return;
-    right = direction[(axis + 1) % 3] / direction[axis];
-    up = direction[(axis + 2) % 3] / direction[axis];
-    norm = std::sqrt(1.0 + right * right + up * up);
+Tube::Tube(const Vec3& start, const Vec3& end, double distance, const Vec3& curvature)
+    : from(start),
+      along(end - start),
+      curve(curvature),
+      margin(distance * kLengthRounding),
+      size((size_of(along) + size_of(curve)) * kLengthRounding),
+      rounding(kRounding * size),
+      is_straight(curve == Vec3{}) {
+    const double square = dot(along, along);
+    const bool is_long = square > kLeastSquare;
+    beside = margin * (is_long ? std::sqrt(square) * kLengthRounding : size);
+    if (is_long) per_squared_length = 1.0 / square;
+    if (is_straight) return;
+    const double ahead = -0.25 * dot(along, curve);
+    least_ahead = std::min(ahead, 0.0);
+    most_ahead = std::max(ahead, 0.0);
 }
 
 unsigned TriangleCluster::overlaps(const Tube& tube, TubeIntervals& intervals) const {
-    if (tube.is_straight) {
-        const Vec3 start = per_unit * (tube.from - center);
-        const Mask projected =
-            projected_lanes(*this, start, tube.shear, kCornerRounding + per_unit * tube.margin, 0.0F);
-        if (is_empty(projected)) return 0;
-        const LocalSegment segment = localized(*this, tube);
-        return segment.begin > segment.end ? 0 : overlapping_lanes(*this, segment, projected, intervals);
-    }
-    const LocalSegment segment = localized(*this, tube);
-    if (segment.begin > segment.end) return 0;
-    const Shear shear(segment.chord);
-    const Mask projected = projected_lanes(*this, segment.start, shear, segment.width, segment.size);
-    return is_empty(projected) ? 0 : overlapping_lanes(*this, segment, projected, intervals);
+    static const Version version = version_for(vector_units().back());
+    return version(*this, tube, intervals);
+}
+
+unsigned TriangleCluster::overlaps(const Tube& tube, TubeIntervals& intervals, VectorUnit unit) const {
+    return version_for(unit)(*this, tube, intervals);
 }
 
 Box3 TriangleCluster::box() const {
-    const double unit = 1.0 / per_unit;
     Box3 result;
-    for (std::size_t lane = 0; lane < 4; ++lane) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3 corner{static_cast<double>(x[k][lane]), static_cast<double>(y[k][lane]),
-                              static_cast<double>(z[k][lane])};
-            result.include(center + unit * corner);
-        }
+    for (const auto& [x, y, z] : corners) {
+        for (std::size_t lane = 0; lane < 4; ++lane) result.include(Vec3{x[lane], y[lane], z[lane]});
     }
-    const double rounding = kCornerRounding * unit;
-    const Vec3 by{rounding, rounding, rounding};
-    return {result.lower - by, result.upper + by};
+    return result;
 }
 
 }  // namespace ricochet

@@ -10,6 +10,7 @@
 
 #include "ricochet/core/box3.h"
 #include "ricochet/core/page_vector.h"
+#include "ricochet/core/vector_unit.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {
@@ -17,47 +18,29 @@ namespace ricochet {
 /// Index that marks an empty lane of a cluster.
 inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFU;
 
-/// A shear that projects along a direction onto the plane perpendicular to its dominant axis.
-/// Method: S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection", Journal of Computer Graphics
-/// Techniques 2, 2013.
-struct Shear {
-    Shear() = default;
-    /// Makes the shear along a direction of any length. Its axis is the direction's largest component.
-    explicit Shear(const Vec3& direction);
-
-    int axis = 2;        ///< dominant; the next axis (cyclic) is "right" and the one after that is "up"
-    double right = 0.0;  ///< shift per unit of length along the axis; at most 1 in magnitude, like `up`
-    double up = 0.0;
-    double norm = 1.0;  ///< largest factor by which projected distances grow
-};
-
 /// All points within a margin of a line or parabola from `start` to `end`. The path is start + f (end - start)
 /// - f (1 - f) curve for f in [0, 1].
 class Tube {
 public:
     Tube() = default;
     /// Makes a tube of the given radius `distance` (m, >= 0).
-    Tube(const Vec3& start, const Vec3& end, double distance, const Vec3& curvature = {})
-        : from(start),
-          along(end - start),
-          curve(curvature),
-          margin(distance),
-          sagitta(0.25 * length(curve)),
-          per_length(1.0 / length(along)),
-          shear(along),
-          is_straight(curve == Vec3{}) {}
+    Tube(const Vec3& start, const Vec3& end, double distance, const Vec3& curvature = {});
 
     [[nodiscard]] Vec3 offset(double fraction) const {
         return fraction * along - (fraction * (1.0 - fraction)) * curve;
     }
 
     Vec3 from;
-    Vec3 along;  ///< to the other end
+    Vec3 along;  ///< chord to the other end
     Vec3 curve;
-    double margin = 0.0;
-    double sagitta = 0.0;     ///< largest distance of the path from its chord, in m
-    double per_length = 0.0;  ///< 1 / length of the chord, in 1/m; infinite for a point
-    Shear shear;              ///< along the chord
+    double margin = 0.0;    ///< in m, rounded up
+    double size = 0.0;      ///< bound on the sum of the magnitudes of the components of chord and curve, in m
+    double rounding = 0.0;  ///< of projections onto the chord, relative to the size of the projected vector, in m
+    double beside = 0.0;    ///< margin times length of the chord, in m^2, rounded up
+    double per_squared_length = 0.0;  ///< in 1/m^2; 0 for a chord so short that the number is beyond doubles
+    // Least and largest difference between the projections of path and chord onto the chord, in m^2.
+    double least_ahead = 0.0;
+    double most_ahead = 0.0;
     bool is_straight = true;
 };
 
@@ -67,28 +50,23 @@ struct TubeIntervals {
     std::array<double, 4> leave;
 };
 
-/// Up to four triangles as a structure of arrays, quantised to 16 bits relative to their common centre. Bounds cover
-/// the rounding, because clusters only propose candidates. Occupies two cache lines.
+/// Up to four triangles as a structure of arrays.
 struct alignas(64) TriangleCluster {
-    using Lanes = std::array<std::int16_t, 4>;
-    /// Upper bound on half the largest extent of a cluster, in its units. Local: a unit of this format.
-    static constexpr float kExtent = 0x1p15F;
+    using Lanes = std::array<double, 4>;
 
-    std::array<Lanes, 3> x;  ///< of the corners, in units from the centre, rounded to the nearest
-    std::array<Lanes, 3> y;
-    std::array<Lanes, 3> z;
-    std::array<std::uint32_t, 4> triangle;  ///< indices; unused lanes have kNoTriangle and the corners of lane 0
-    Vec3 center;                            ///< in m
-    double per_unit = 1.0;                  ///< in 1/m, a power of two
+    std::array<std::array<Lanes, 3>, 3> corners;  ///< coordinates in m, by corner and axis
+    std::array<std::uint32_t, 4> triangle;        ///< indices; unused lanes have kNoTriangle and the corners of lane 0
+    std::array<float, 4> edge;                    ///< length of the longest edge, in m, rounded up
 
     /// Returns one bit for each lane whose triangle may intersect the tube. For these lanes it sets the interval of the
     /// path outside of which the tube certainly does not touch the triangle. Undecided triangles count as candidates.
-    /// Triangles may be degenerate.
+    /// Triangles may be degenerate. The result does not depend on the vector unit.
     [[nodiscard]] unsigned overlaps(const Tube& tube, TubeIntervals& intervals) const;
-    /// Returns a box around the triangles, in m.
+    [[nodiscard]] unsigned overlaps(const Tube& tube, TubeIntervals& intervals, VectorUnit unit) const;
+    /// Returns the box of the triangles, in m.
     [[nodiscard]] Box3 box() const;
 };
-static_assert(sizeof(TriangleCluster) == 128);
+static_assert(sizeof(TriangleCluster) == 320);
 
 using TriangleClusters = PageVector<TriangleCluster>;
 

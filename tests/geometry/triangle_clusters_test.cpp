@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <set>
 #include <string>
@@ -129,6 +131,134 @@ TEST(TriangleCluster, FewTrianglesOutsideTheTubeAreNear) {
     }
     EXPECT_GE(right, test::scaled(400) * 9 / 10);
     EXPECT_LE(wrong, right / 20 + 1);
+}
+
+/// A random tube near four triangles. Half of the tubes are curved.
+struct TubeBesideTriangles {
+    TriangleMesh mesh;
+    Vec3 from;
+    Vec3 to;
+    Vec3 curve;
+    double margin;
+
+    explicit TubeBesideTriangles(RandomSequence& random)
+        : mesh(neighbours(random, 1.0, 3.0 * random.in_unit_ball())), margin(std::pow(10.0, -9.0 * random.uniform())) {
+        const auto& aim = mesh.triangles[static_cast<std::size_t>(4.0 * random.uniform())];
+        const Vec3 target = point_of(mesh, aim, random) + 3.0 * margin * random.in_unit_ball();
+        const Vec3 direction = random.unit_vector();
+        from = target - std::pow(10.0, 3.0 * random.uniform() - 2.0) * direction;
+        to = target + std::pow(10.0, 3.0 * random.uniform() - 2.0) * direction;
+        if (random.uniform() < 0.5) curve = std::pow(10.0, -3.0 * random.uniform()) * random.unit_vector();
+    }
+
+    [[nodiscard]] Tube tube(double scale = 1.0) const {
+        return {scale * from, scale * to, scale * margin, scale * curve};
+    }
+    [[nodiscard]] TriangleClusters clusters(double scale = 1.0) const {
+        std::vector<Vec3> vertices = mesh.vertices;
+        for (Vec3& vertex : vertices) vertex = scale * vertex;
+        return make_clusters(vertices, mesh.triangles);
+    }
+};
+
+TEST(TriangleCluster, EveryVectorUnitGivesTheSameBits) {
+    for (int i = 0; i < test::scaled(20000); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i));
+        RandomSequence random(static_cast<std::uint64_t>(i), 42, 0);
+        const TubeBesideTriangles scene(random);
+        const Tube tube = scene.tube();
+        for (const TriangleCluster& cluster : scene.clusters()) {
+            TubeIntervals expected{};
+            const unsigned bits = cluster.overlaps(tube, expected, VectorUnit::baseline);
+            for (const VectorUnit unit : vector_units()) {
+                TubeIntervals intervals{};
+                ASSERT_EQ(cluster.overlaps(tube, intervals, unit), bits) << static_cast<int>(unit);
+                ASSERT_EQ(intervals.enter, expected.enter);
+                ASSERT_EQ(intervals.leave, expected.leave);
+            }
+        }
+    }
+}
+
+TEST(TriangleCluster, ScalesChangeNoBit) {
+    for (int i = 0; i < test::scaled(2000); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i));
+        RandomSequence random(static_cast<std::uint64_t>(i), 43, 0);
+        const TubeBesideTriangles scene(random);
+        TubeIntervals expected{};
+        const unsigned bits = scene.clusters()[0].overlaps(scene.tube(), expected);
+        for (const double scale : {0x1p-60, 0x1p-20, 0x1p20, 0x1p60}) {
+            TubeIntervals intervals{};
+            ASSERT_EQ(scene.clusters(scale)[0].overlaps(scene.tube(scale), intervals), bits) << scale;
+            ASSERT_EQ(intervals.enter, expected.enter);
+            ASSERT_EQ(intervals.leave, expected.leave);
+        }
+    }
+}
+
+// Beyond the range of the bounds every triangle may count as near, but none that the tube touches may be missed.
+TEST(TriangleCluster, TouchedTrianglesOfAnySizeAreNear) {
+    for (int i = 0; i < test::scaled(2000); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i));
+        RandomSequence random(static_cast<std::uint64_t>(i), 44, 0);
+        const TriangleMesh mesh = neighbours(random, 1.0, random.in_unit_ball());
+        const auto& aim = mesh.triangles[static_cast<std::size_t>(4.0 * random.uniform())];
+        const Vec3 target = point_of(mesh, aim, random);
+        const Vec3 reach = std::pow(10.0, 4.0 * random.uniform() - 2.0) * random.unit_vector();
+        for (const double scale : {1e-80, 1e-60, 1e-40, 1e40, 1e60, 1e74}) {
+            std::vector<Vec3> vertices = mesh.vertices;
+            for (Vec3& vertex : vertices) vertex = scale * vertex;
+            const Tube tube(scale * (target - reach), scale * (target + reach), scale * 1e-9);
+            bool found = false;
+            for (const TriangleCluster& cluster : make_clusters(vertices, mesh.triangles)) {
+                TubeIntervals intervals;
+                const unsigned bits = cluster.overlaps(tube, intervals);
+                for (std::size_t lane = 0; lane < 4; ++lane) {
+                    if ((bits & (1U << lane)) == 0 || mesh.triangles[cluster.triangle[lane]] != aim) continue;
+                    found = true;
+                    EXPECT_LE(intervals.enter[lane], 0.5);
+                    EXPECT_GE(intervals.leave[lane], 0.5);
+                }
+            }
+            ASSERT_TRUE(found) << scale;
+        }
+    }
+}
+
+// A particle that slides on a plane of many triangles. No tested direction is perpendicular to an edge in the plane, so
+// some triangles beside the path count as near.
+TEST(TriangleCluster, FewNeighboursInThePlaneOfThePathAreNear) {
+    RandomSequence random(11, 0, 0);
+    const auto [normal, u, v] = std::array{Vec3{0, 0, 1}, Vec3{0.8, 0.6, 0}, Vec3{-0.6, 0.8, 0}};
+    TriangleMesh mesh;
+    for (std::uint32_t row = 0; row < 40; ++row) {
+        for (std::uint32_t column = 0; column < 40; ++column) {
+            mesh.vertices.push_back(0.1 * (row * u + column * v));
+            const std::uint32_t corner = 40 * row + column;
+            if (row + 1 == 40 || column + 1 == 40) continue;
+            mesh.triangles.push_back({corner, corner + 40, corner + 1});
+            mesh.triangles.push_back({corner + 41, corner + 1, corner + 40});
+        }
+    }
+    const TriangleClusters clusters = make_clusters(mesh.vertices, mesh.triangles);
+    int near = 0;
+    int touched = 0;
+    for (int i = 0; i < 200; ++i) {
+        const Vec3 from = (0.5 + 2.5 * random.uniform()) * u + (0.5 + 2.5 * random.uniform()) * v + 1e-12 * normal;
+        const Vec3 to = from + 0.03 * normalized(random.uniform() * u + random.uniform() * v);
+        for (const TriangleCluster& cluster : clusters) {
+            TubeIntervals intervals;
+            near += std::popcount(cluster.overlaps(Tube(from, to, 1e-11), intervals));
+        }
+        for (const auto& [a, b, c] : mesh.triangles) {
+            const double squared_distance = squared_distance_of_segment_from_triangle(
+                from, to, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+            touched += squared_distance < 1e-22 ? 1 : 0;
+        }
+    }
+    EXPECT_GE(touched, 200);
+    EXPECT_GE(near, touched);
+    EXPECT_LE(near, 2 * touched);
 }
 
 TEST(TriangleClusters, ContainEveryTriangleOnceAndAreNearlyFull) {

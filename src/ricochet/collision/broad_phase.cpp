@@ -42,20 +42,32 @@ public:
         longest_ = path.duration * std::sqrt(0.5 * margins.curvature / path.sagitta(0.0, path.duration)) * kShorter;
     }
 
-    /// Returns the first piece from a time on, or nothing if the path stays clear until its end or if too many pieces
-    /// are needed.
-    std::optional<Piece> next(double from) {
+    /// Returns the next piece, or nothing if the path stays clear until its end or if too many pieces are needed. A
+    /// path without duration is one piece.
+    std::optional<Piece> next() {
+        if (is_at_end_ || !has_next()) return std::nullopt;
+        double from = to_;
         if (path_.degree > 1) from = time_clear_of_field(path_, world_.distance_field(), margin_, from);
-        if (!(from < path_.duration) || !has_next()) return std::nullopt;
+        if (from > 0.0 && from >= path_.duration) return std::nullopt;
         --left_;
-        return Piece{from, from + longest_ < path_.duration ? from + longest_ : path_.duration};
+        to_ = from + longest_ < path_.duration ? from + longest_ : path_.duration;
+        is_at_end_ = to_ == path_.duration;
+        return Piece{from, to_};
     }
+    /// Returns the end of the last piece, in s.
+    [[nodiscard]] double end() const { return to_; }
     /// Returns false if so many pieces have been returned that a test of all triangles is cheaper.
     [[nodiscard]] bool has_next() const { return left_ > 0; }
+    /// Returns true if chords of the path cannot fit into the margin of the boxes. Otherwise chords keep to it, even if
+    /// all triangles have been tested, because the chords that a particle follows must not depend on the number of
+    /// triangles.
+    [[nodiscard]] bool are_too_short() const { return !(longest_ > kShortest * path_.duration); }
 
 private:
     /// Factor that covers the rounding of the longest duration. Local: an error bound of this arithmetic.
     static constexpr double kShorter = 1.0 - 0x1p-40;
+    /// Least duration of a piece, as a fraction of the path's. Local, because only paths of absurd curvature reach it.
+    static constexpr double kShortest = 0x1p-40;
     /// Least number of pieces before all triangles are tested instead. Local, because only the cost depends on it.
     static constexpr std::size_t kMostPieces = 64;
 
@@ -68,6 +80,8 @@ private:
     double margin_;
     double longest_ = std::numeric_limits<double>::infinity();  ///< in s, of a piece
     std::size_t left_;
+    double to_ = 0.0;
+    bool is_at_end_ = false;
 };
 
 /// Tests one path against the bounding volume hierarchy, piece by piece.
@@ -86,16 +100,14 @@ struct PieceQuery {
     // Visits pieces in the order of time, so a contact ends the query.
     CandidateSet test_near() {
         Pieces pieces(world, margins, path);
-        double from = 0.0;
-        while (from <= narrow_phase.first_time()) {
-            const std::optional<Piece> piece = pieces.next(from);
+        while (pieces.end() <= narrow_phase.first_time()) {
+            const std::optional<Piece> piece = pieces.next();
             if (!piece) break;
             query_piece(*piece);
-            from = piece->to;
         }
         if (pieces.has_next()) return CandidateSet::near;
         test_all();
-        return CandidateSet::all;
+        return pieces.are_too_short() ? CandidateSet::all : CandidateSet::near;
     }
 
     // The tube also covers chords of the path that covers_chord() accepts.
@@ -140,14 +152,12 @@ struct ClearQuery {
 
     void run() {
         Pieces pieces(world, margins, path);
-        double from = 0.0;
-        while (from < until) {
-            const std::optional<Piece> piece = pieces.next(from);
+        while (pieces.end() < until) {
+            const std::optional<Piece> piece = pieces.next();
             if (!piece) break;
             query_piece(*piece);
-            from = piece->to;
         }
-        if (!pieces.has_next()) until = std::min(until, from);
+        if (!pieces.has_next()) until = std::min(until, pieces.end());
     }
 
     void query_piece(const Piece& piece) {

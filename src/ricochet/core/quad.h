@@ -87,7 +87,8 @@ RICOCHET_INLINE void store(const Quad& a, double* to) { *reinterpret_cast<Quad::
 [[nodiscard]] RICOCHET_INLINE Quad larger(const Quad& a, const Quad& b) { return select(a < b, b, a); }
 /// Returns the smaller number per lane, with the semantics of std::min().
 [[nodiscard]] RICOCHET_INLINE Quad smaller(const Quad& a, const Quad& b) { return select(b < a, b, a); }
-[[nodiscard]] RICOCHET_INLINE Quad abs(const Quad& a) {
+/// Returns |a| per lane.
+[[nodiscard]] RICOCHET_INLINE Quad magnitude(const Quad& a) {
     using Bits = std::int64_t __attribute__((vector_size(32)));
     constexpr std::int64_t kMagnitude = 0x7FFFFFFFFFFFFFFF;
     return {reinterpret_cast<Quad::Lanes>(reinterpret_cast<Bits>(a.lanes) &
@@ -114,6 +115,9 @@ template <class T>
     return mask ? a : b;
 }
 [[nodiscard]] RICOCHET_INLINE double larger(double a, double b) { return std::max(a, b); }
+[[nodiscard]] RICOCHET_INLINE double smaller(double a, double b) { return std::min(a, b); }
+[[nodiscard]] RICOCHET_INLINE double magnitude(double a) { return std::fabs(a); }
+[[nodiscard]] RICOCHET_INLINE double root(double a) { return std::sqrt(a); }
 
 /// Four vectors.
 struct QuadVec3 {

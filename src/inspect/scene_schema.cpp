@@ -297,7 +297,7 @@ and lifetimes. It also includes explicit particles, ropes and cloth, tables, gri
 
 - 380 bytes per particle, and 80 more with `run --verify`
 - if springs join particles, 800 bytes per particle and 200 per spring, and four times as much with `implicit_euler`
-- 432 bytes per triangle
+- 456 bytes per triangle
 
 Particles that `bounds`, absorbing surfaces or shattering can retire count for one step of their rate only, because
 their number is unknown. The number of children is unknown, too. If births exceed the memory, the run ends with one line

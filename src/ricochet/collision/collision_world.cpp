@@ -40,6 +40,19 @@ bool is_over_rim(const TrianglePlane& triangle, const Vec3& p, double distance_f
     return projects_into_triangle(p, triangle.a(), triangle.b(), triangle.c(), triangle.unit_normal());
 }
 
+PageVector<Vec3> unit_normals_of(const PlacedColliders& colliders) {
+    PageVector<Vec3> normals(colliders.triangles().size());
+    parallel_for_blocks(normals.size(), std::size_t{1} << 12, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            const auto triangle = static_cast<std::uint32_t>(t);
+            if (colliders.is_degenerate(triangle)) continue;
+            const auto [a, b, c] = colliders.corners_of_triangle(triangle);
+            normals[t] = unit_normal(a, b, c);
+        }
+    });
+    return normals;
+}
+
 }  // namespace
 
 CollisionWorld::CollisionWorld(std::vector<ColliderDescription> colliders, double chord_margin)
@@ -51,6 +64,7 @@ CollisionWorld::CollisionWorld(std::shared_ptr<ColliderList> colliders, std::str
     chord_margin_ = std::max(chord_margin * mean_box(*this), kLeastChordMargin * extent);
     prepare_radius(0.0);
     distance_field_ = DistanceField(vertices(), triangles(), triangle_bounds());
+    unit_normals_ = unit_normals_of(*this);
 }
 
 // Boxes of a class are enlarged by its largest radius and the chord margin. Radii up to half the chord margin share the
@@ -95,8 +109,7 @@ CollisionWorld::Nearest CollisionWorld::nearest(SurfaceId surface, const Vec3& p
         return {closest.distance < 0.0 ? -closest.normal : closest.normal, std::fabs(closest.distance),
                 closest.part != ShapePart::side && !closest.on_rim, closest.on_rim};
     }
-    const auto [a, b, c] = corners_in(range, surface);
-    return nearest(TrianglePlane(a, b, c), p);
+    return nearest(plane_of_triangle(triangle_in(range, surface)), p);
 }
 
 CollisionWorld::Nearest CollisionWorld::nearest(const TrianglePlane& triangle, const Vec3& p) {
@@ -128,8 +141,7 @@ Vec3 CollisionWorld::unit_normal_of(SurfaceId surface, const Vec3& p) const {
         const ShapeSurface& shape = shapes()[range.index];
         return shape.shape.closest_point_beyond(shape.part_of(surface), p).normal;
     }
-    const auto [a, b, c] = corners_in(range, surface);
-    return unit_normal(a, b, c);
+    return unit_normals_[triangle_in(range, surface)];
 }
 
 double CollisionWorld::signed_distance_from(SurfaceId surface, const Vec3& p) const {
@@ -176,7 +188,7 @@ double CollisionWorld::time_over(SurfaceId surface, const Path& path, double sla
         return shape.shape.time_over(shape.part_of(surface), path, slack);
     }
     const auto [a, b, c] = corners_in(range, surface);
-    return triangle_exit_time(path, a, b, c, unit_normal(a, b, c), slack);
+    return triangle_exit_time(path, a, b, c, unit_normals_[triangle_in(range, surface)], slack);
 }
 
 bool CollisionWorld::segment_intersects(SurfaceId surface, const Vec3& p, const Vec3& q) const {
@@ -192,12 +204,16 @@ bool CollisionWorld::segment_intersects(SurfaceId surface, const Vec3& p, const 
 
 void CollisionWorld::add_pages_to(std::vector<std::span<const std::byte>>& pages) const {
     add_array_pages_to(pages);
-    const auto list = clusters_ ? own_pages(*clusters_) : std::span<const std::byte>();
-    if (!list.empty()) pages.push_back(list);
+    const auto add = [&](std::span<const std::byte> list) {
+        if (!list.empty()) pages.push_back(list);
+    };
+    if (clusters_) add(own_pages(*clusters_));
+    add(own_pages(unit_normals_));
 }
 
 std::size_t CollisionWorld::memory_bytes() const {
     std::size_t bytes = distance_field_.memory_bytes() + array_bytes();
+    bytes += unit_normals_.capacity() * sizeof(Vec3);
     if (clusters_) bytes += clusters_->capacity() * sizeof((*clusters_)[0]);
     for (const RadiusClass& one : classes_) bytes += one.bvh.memory_bytes();
     return bytes;

@@ -39,6 +39,11 @@ public:
     /// Returns the point of a triangle that is nearest to p.
     [[nodiscard]] static Nearest nearest(const TrianglePlane& triangle, const Vec3& p);
 
+    /// Returns the plane of a triangle.
+    [[nodiscard]] TrianglePlane plane_of_triangle(std::uint32_t triangle) const {
+        const auto [a, b, c] = corners_of_triangle(triangle);
+        return {a, b, c, unit_normals_[triangle]};
+    }
     /// Returns the point of a surface that is nearest to p.
     [[nodiscard]] SurfacePosition closest_point_on(SurfaceId surface, const Vec3& p) const;
 
@@ -93,9 +98,13 @@ public:
     void add_pages_to(std::vector<std::span<const std::byte>>& pages) const;
 
 private:
+    /// Returns the index of a triangle, given the range of its collider.
+    [[nodiscard]] static std::uint32_t triangle_in(const Range& range, SurfaceId surface) {
+        return range.first_triangle + (surface - range.first_surface);
+    }
     /// Returns the corners of a triangle, given the range of its collider.
     [[nodiscard]] Corners corners_in(const Range& range, SurfaceId surface) const {
-        return corners_of_triangle(range.first_triangle + (surface - range.first_surface));
+        return corners_of_triangle(triangle_in(range, surface));
     }
     [[nodiscard]] double largest_radius_of_class(double radius) const;
 
@@ -106,6 +115,7 @@ private:
         TriangleBvh bvh;
     };
     DistanceField distance_field_;
+    PageVector<Vec3> unit_normals_;     ///< of the triangles; zero for triangles without area
     std::vector<RadiusClass> classes_;  ///< ascending in radius; the first is for points
     bool culls_ = true;
 };

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "ricochet/collision/collision_world.h"
@@ -31,8 +30,7 @@ public:
     [[nodiscard]] const TrianglePlane& of(const CollisionWorld& world, std::uint32_t triangle) {
         const std::size_t slot = triangle % kSlots;
         if (triangle_[slot] != triangle) {
-            const auto [a, b, c] = world.corners_of_triangle(triangle);
-            std::construct_at(&plane_[slot], a, b, c);
+            plane_[slot] = world.plane_of_triangle(triangle);
             triangle_[slot] = triangle;
         }
         return plane_[slot];

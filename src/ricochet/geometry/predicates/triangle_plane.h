@@ -16,6 +16,10 @@ public:
     TrianglePlane() = default;
     TrianglePlane(const Vec3& a, const Vec3& b, const Vec3& c)
         : a_(a), b_(b), c_(c), cross_(detail::filtered_cross(b - a, c - a)) {}
+    /// unit_normal: unit_normal(a, b, c), if the caller has it.
+    TrianglePlane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& unit_normal) : TrianglePlane(a, b, c) {
+        unit_normal_ = unit_normal;
+    }
 
     [[nodiscard]] const Vec3& a() const { return a_; }
     [[nodiscard]] const Vec3& b() const { return b_; }

@@ -33,7 +33,7 @@ bool read_mesh_bytes(const Reader& reader, std::string_view bytes) {
 
 // Reads glTF without external buffers, which are not part of the bytes. A small file may show a mesh some thousand
 // times at most.
-ParsedMesh read_small_gltf(const MeshSource& source) {
+ImportedMesh read_small_gltf(const MeshSource& source) {
     constexpr std::size_t kFreeCorners = 20'000;
     return read_gltf(source, std::nullopt, kFreeCorners);
 }

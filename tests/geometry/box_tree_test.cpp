@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/random.h"
 
 namespace ricochet {
@@ -34,7 +35,7 @@ TEST(BoxTree, FindsTheBoxesThatOverlapABox) {
             std::sort(found.begin(), found.end());
             std::vector<std::uint32_t> expected;
             for (std::uint32_t k = 0; k < boxes.size(); ++k) {
-                if (BoxTree::meet(boxes[k], query)) expected.push_back(k);
+                if (overlap(boxes[k], query)) expected.push_back(k);
             }
             EXPECT_EQ(found, expected);
             EXPECT_EQ(tree.has_near(query), !expected.empty());

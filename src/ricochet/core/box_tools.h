@@ -6,6 +6,14 @@
 
 namespace ricochet {
 
+/// Returns the box around points and boxes.
+template <class... Parts>
+[[nodiscard]] Box3 box_around(const Parts&... parts) {
+    Box3 box;
+    (box.include(parts), ...);
+    return box;
+}
+
 /// Returns a box that is larger by a margin, in m, on every side.
 [[nodiscard]] inline Box3 grown(const Box3& box, double margin) {
     const Vec3 by{margin, margin, margin};

@@ -37,6 +37,10 @@ struct DoubleDouble {
     friend constexpr std::partial_ordering operator<=>(const DoubleDouble&, const DoubleDouble&) = default;
 };
 
+/// Return the nearest double, for templates that compute with either type.
+[[nodiscard]] constexpr double high(double x) { return x; }
+[[nodiscard]] constexpr double high(const DoubleDouble& x) { return x.hi; }
+
 /// Returns a + b exactly, as rounded sum and rounding error (Knuth; any order of magnitudes).
 [[nodiscard]] constexpr DoubleDouble two_sum(double a, double b) {
     const double sum = a + b;
@@ -81,6 +85,22 @@ struct DoubleDouble {
     }
 #endif
     return two_product_by_splitting(a, b);
+}
+
+/// Return a - b and a * b as a double, rounded, or as a DoubleDouble, exactly.
+template <class Real>
+[[nodiscard]] constexpr Real difference_as(double a, double b) {
+    if constexpr (std::is_same_v<Real, double>)
+        return a - b;
+    else
+        return two_diff(a, b);
+}
+template <class Real>
+[[nodiscard]] constexpr Real product_as(double a, double b) {
+    if constexpr (std::is_same_v<Real, double>)
+        return a * b;
+    else
+        return two_product(a, b);
 }
 
 [[nodiscard]] constexpr DoubleDouble operator-(const DoubleDouble& x) { return {-x.hi, -x.lo}; }

@@ -102,8 +102,9 @@ void move(MovingPose& pose, const Oscillation& motion, double time) {
     shift(pose, wave.value * size, wave.rate * size, wave.second * size);
 }
 
+/// The velocities and accelerations of the pose are invalid afterwards.
 void move(MovingPose& pose, const KeyedScale& motion, double time) {
-    scale(pose.world_from_frame, motion.factors.value(time));
+    scale_axes(pose.world_from_frame, motion.factors.value(time));
 }
 
 DerivativeBounds wave_bounds(double amplitude, double frequency) {

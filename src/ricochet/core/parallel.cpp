@@ -8,8 +8,6 @@
 #include <tbb/version.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <bit>
 #include <exception>
 #include <limits>

@@ -8,7 +8,6 @@
 /// because the edges of their neighbours cover them.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>

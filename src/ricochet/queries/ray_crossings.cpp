@@ -1,9 +1,6 @@
 #include "ricochet/queries/ray_crossings.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numeric>
 
 #include "ricochet/core/disjoint_sets.h"
 #include "ricochet/geometry/predicates/predicates.h"

@@ -1,11 +1,8 @@
 // Queries for rays: first hits, all hits, numbers of hits, and occlusion.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "ricochet/core/error.h"

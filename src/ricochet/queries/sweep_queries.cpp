@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/loop_stop.h"
 #include "ricochet/core/parallel.h"
@@ -188,21 +189,17 @@ public:
         std::vector<Box3> boxes(mesh.mesh().triangles.size());
         for (std::size_t t = 0; t < boxes.size(); ++t) {
             for (const std::uint32_t v : mesh.mesh().triangles[t]) {
-                boxes[t].include(mesh.mesh().vertices[v]);
-                boxes[t].include(after[v]);
+                boxes[t].include(box_around(mesh.mesh().vertices[v], after[v]));
             }
         }
         tree_.fit(boxes);
     }
 
     [[nodiscard]] std::optional<Contact> first(const MovingPoint& point, double radius) const {
-        Box3 box;
-        box.include(point.from);
-        box.include(point.to);
+        const Box3 box = box_around(point.from, point.to);
         const double beside = radius * (1.0 + 0x1p-50) + 0x1p-50 * max_abs(max(abs(box.lower), abs(box.upper)));
-        const Vec3 by{beside, beside, beside};
         std::vector<std::uint32_t> near;
-        tree_.near({box.lower - by, box.upper + by}, [&](std::uint32_t t) { near.push_back(t); });
+        tree_.near(grown(box, beside), [&](std::uint32_t t) { near.push_back(t); });
         std::optional<Contact> best;
         for (const std::uint32_t triangle : near) {
             const MovingTriangle moving = moving_triangle(triangle);

@@ -13,7 +13,6 @@
 namespace ricochet::verify {
 namespace {
 
-constexpr std::uint32_t kLeafSize = 8;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void require(bool condition, const char* what) {
@@ -54,11 +53,6 @@ bool encloses(const VerifiedDeformation& surface) {
     return std::none_of(is_odd.begin(), is_odd.end(), [](const auto& edge) { return edge.second; });
 }
 
-bool meet(const Box3& a, const Box3& b) {
-    const Vec3 gap = max(a.lower - b.upper, b.lower - a.upper);
-    return !(gap.x > 0.0 || gap.y > 0.0 || gap.z > 0.0);
-}
-
 }  // namespace
 
 CheckedDeformation::CheckedDeformation(std::uint32_t collider, VerifiedDeformation surface)
@@ -77,53 +71,21 @@ CheckedDeformation::CheckedDeformation(std::uint32_t collider, VerifiedDeformati
     require(!surface_.triangles.empty(), "verified mesh that deforms: expected triangles");
     is_closed_ = encloses(surface_);
     // Triangles that contain a vertex twice are skipped, because they never have an area.
+    std::vector<std::uint32_t> listed;
     for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t) {
-        if (std::set(surface_.triangles[t].begin(), surface_.triangles[t].end()).size() == 3) order_.push_back(t);
+        if (std::set(surface_.triangles[t].begin(), surface_.triangles[t].end()).size() == 3) listed.push_back(t);
     }
-    if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
-    boxes_.resize(nodes_.size() * surface_.times.size());
-    for (std::size_t key = 0; key < surface_.times.size(); ++key) fit(key);
-}
-
-/// Builds the tree recursively. Each node splits its triangles in two halves by their positions at the first key.
-void CheckedDeformation::build(std::uint32_t begin, std::uint32_t end) {
-    const std::size_t index = nodes_.size();
-    nodes_.push_back({begin, end - begin});
-    if (end - begin <= kLeafSize) return;
-    const std::vector<Vec3>& vertices = surface_.vertices.front();
-    const auto middle_of = [&](std::uint32_t t) {
-        const auto [a, b, c] = surface_.triangles[t];
-        return vertices[a] + vertices[b] + vertices[c];
-    };
-    Box3 box;
-    for (std::uint32_t k = begin; k < end; ++k) box.include(middle_of(order_[k]));
-    const Vec3 size = box.size();
-    const int axis = size.x >= std::max(size.y, size.z) ? 0 : (size.y >= size.z ? 1 : 2);
-    const std::uint32_t half = begin + (end - begin) / 2;
-    std::nth_element(order_.begin() + begin, order_.begin() + half, order_.begin() + end,
-                     [&](std::uint32_t a, std::uint32_t b) {
-                         const double at_a = middle_of(a)[axis];
-                         const double at_b = middle_of(b)[axis];
-                         return at_a != at_b ? at_a < at_b : a < b;
-                     });
-    build(begin, half);
-    nodes_[index] = {static_cast<std::uint32_t>(nodes_.size()), 0};
-    build(half, end);
-}
-
-void CheckedDeformation::fit(std::size_t key) {
-    const std::vector<Vec3>& vertices = surface_.vertices[key];
-    for (std::size_t i = nodes_.size(); i-- > 0;) {
-        Box3 box;
-        const Node& node = nodes_[i];
-        for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
-            for (const std::uint32_t corner : surface_.triangles[order_[k]]) box.include(vertices[corner]);
-        }
-        if (node.count == 0) {
-            box.include(boxes_[key * nodes_.size() + i + 1]);
-            box.include(boxes_[key * nodes_.size() + node.first]);
-        }
-        boxes_[key * nodes_.size() + i] = box;
+    constexpr std::uint32_t kLeafSize = 8;
+    tree_ = ItemTree(static_cast<std::uint32_t>(listed.size()), kLeafSize, [&](std::uint32_t k) {
+        const auto [a, b, c] = corners_at(listed[k], Moment{});
+        return a + b + c;
+    });
+    for (const std::uint32_t k : tree_.order()) order_.push_back(listed[k]);
+    for (const std::vector<Vec3>& key : surface_.vertices) {
+        boxes_.push_back(tree_.boxes([&](std::uint32_t k) {
+            const auto [a, b, c] = surface_.triangles[order_[k]];
+            return box_around(key[a], key[b], key[c]);
+        }));
     }
 }
 
@@ -181,11 +143,10 @@ std::vector<CheckedDeformation::Moment> CheckedDeformation::moments_of(const Spa
 /// Returns the box of a node at a moment. The box is interpolated between the boxes at both keys, and therefore
 /// encloses the interpolated vertices.
 Box3 CheckedDeformation::box_at(std::size_t node, const Moment& moment) const {
-    const Box3& a = boxes_[moment.from * nodes_.size() + node];
-    const Box3& b = boxes_[moment.to * nodes_.size() + node];
-    const double pad = 0x1p-45 * largest_;
-    const Vec3 by{pad, pad, pad};
-    return {a.lower + moment.part * (b.lower - a.lower) - by, a.upper + moment.part * (b.upper - a.upper) + by};
+    const Box3& a = boxes_[moment.from][node];
+    const Box3& b = boxes_[moment.to][node];
+    const Box3 between{a.lower + moment.part * (b.lower - a.lower), a.upper + moment.part * (b.upper - a.upper)};
+    return grown(between, 0x1p-45 * largest_);
 }
 
 std::shared_ptr<const ParityOracle> CheckedDeformation::oracle_at(double time) const {
@@ -215,19 +176,17 @@ bool CheckedDeformation::is_on_surface(const Vec3& p, double time) const {
 
 void CheckedDeformation::find_crossings(const Segment& segment, bool is_late,
                                         std::vector<CheckedFrame::Crossing>& crossings) const {
-    Box3 box;
-    box.include(segment.from);
-    box.include(segment.to);
+    const Box3 box = box_around(segment.from, segment.to);
     const Span span{segment.begin, segment.end};
     const std::vector<Moment> moments = moments_of(span);
     const bool leads_over_key = !is_late && moments.size() > 2;
     visit_near(box, span, [&](std::uint32_t triangle) {
         Box3 swept;
         for (const Moment& moment : moments) {
-            const Corners corners = corners_at(triangle, moment);
-            for (const Vec3& corner : {corners.a, corners.b, corners.c}) swept.include(corner);
+            const auto [a, b, c] = corners_at(triangle, moment);
+            swept.include(box_around(a, b, c));
         }
-        if (!meet(box, swept)) return;
+        if (!overlap(box, swept)) return;
         const MovingCorners moving{corners_at(triangle, moments.front()), corners_at(triangle, moments.back())};
         if (!leads_over_key && are_apart({segment.from, segment.to}, moving)) return;
         crossings.push_back({segment.to, collider_, triangle});

@@ -11,9 +11,11 @@
 #include <vector>
 
 #include "ricochet/core/box3.h"
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/segment.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/verify/checked_frame.h"
+#include "ricochet/verify/item_tree.h"
 #include "ricochet/verify/parity.h"
 #include "ricochet/verify/triangle_tests.h"
 #include "ricochet/verify/verifier.h"
@@ -44,8 +46,7 @@ public:
         const double least = radius - sphere_tolerance(radius, largest);
         if (!(least > 0.0)) return;
         const double padded = (1.0 + 0x1p-40) * least + 0x1p-40 * max_abs(p);
-        const Vec3 reach{padded, padded, padded};
-        visit_near({p - reach, p + reach}, {time, time}, [&](std::uint32_t triangle) {
+        visit_near(ball_box(p, padded), {time, time}, [&](std::uint32_t triangle) {
             if (is_nearer(p, corners_at(triangle, moment_at(time)), least)) {
                 found(collider_, std::optional<std::uint32_t>(triangle));
             }
@@ -64,10 +65,6 @@ private:
         double begin = 0.0;
         double end = 0.0;
     };
-    struct Node {
-        std::uint32_t first = 0;  ///< first triangle of a leaf in order_; second child of another node
-        std::uint32_t count = 0;  ///< number of triangles of a leaf; 0 for other nodes
-    };
     struct Oracles {
         std::mutex mutex;
         std::array<std::pair<double, std::shared_ptr<const ParityOracle>>, 4> latest;
@@ -80,37 +77,26 @@ private:
     [[nodiscard]] std::vector<Moment> moments_of(const Span& span) const;
     [[nodiscard]] Box3 box_at(std::size_t node, const Moment& moment) const;
     [[nodiscard]] std::shared_ptr<const ParityOracle> oracle_at(double time) const;
-    void build(std::uint32_t begin, std::uint32_t end);
-    void fit(std::size_t key);
 
     /// Calls visit(triangle) for all triangles that touch a box within a time span, and possibly for further triangles.
     template <class Visit>
     void visit_near(const Box3& box, const Span& span, const Visit& visit) const {
         const std::vector<Moment> moments = moments_of(span);
-        if (nodes_.empty()) return;
-        std::vector<std::uint32_t> open{0};
-        while (!open.empty()) {
-            const std::uint32_t index = open.back();
-            open.pop_back();
+        const auto meets = [&](std::uint32_t node) {
             Box3 swept;
-            for (const Moment& moment : moments) swept.include(box_at(index, moment));
-            const Vec3 gap = max(box.lower - swept.upper, swept.lower - box.upper);
-            if (gap.x > 0.0 || gap.y > 0.0 || gap.z > 0.0) continue;
-            const Node& node = nodes_[index];
-            for (std::uint32_t k = node.first; k < node.first + node.count; ++k) visit(order_[k]);
-            if (node.count > 0) continue;
-            open.push_back(node.first);
-            open.push_back(index + 1);
-        }
+            for (const Moment& moment : moments) swept.include(box_at(node, moment));
+            return overlap(box, swept);
+        };
+        tree_.visit(meets, [&](std::uint32_t k) { visit(order_[k]); });
     }
 
     std::uint32_t collider_;
     VerifiedDeformation surface_;
     bool is_closed_ = false;
     double largest_ = 0.0;  ///< largest coordinate, in m
-    std::vector<std::uint32_t> order_;
-    std::vector<Node> nodes_;  ///< nodes in depth-first order
-    std::vector<Box3> boxes_;  ///< one box per node and key
+    ItemTree tree_;
+    std::vector<std::uint32_t> order_;      ///< triangles in the order of the tree's leaves
+    std::vector<std::vector<Box3>> boxes_;  ///< boxes of the tree's nodes, at each key
     std::unique_ptr<Oracles> oracles_ = std::make_unique<Oracles>();
 };
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ricochet/core/box3.h"
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/frame_tree.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/verify/checked_shape.h"
@@ -74,8 +75,7 @@ public:
             if (shape.is_nearer(p, least)) found(collider, std::nullopt);
         }
         const double padded = (1.0 + 0x1p-40) * least + 0x1p-40 * max_abs(p);
-        const Vec3 reach{padded, padded, padded};
-        triangles_.near_box({p - reach, p + reach}, [&](const NamedTriangle& t) {
+        triangles_.near_box(ball_box(p, padded), [&](const NamedTriangle& t) {
             if (is_nearer(p, t.corners, least)) found(t.collider, t.triangle);
         });
     }

@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "ricochet/core/box3.h"
+#include "ricochet/verify/wide_vector.h"
 
 namespace ricochet::verify {
 namespace {
@@ -35,23 +36,8 @@ constexpr int kHalvings = 120;
 /// 1e-45, rounding would decide.
 const Digits kOnSurface("1e-36");
 
-template <class Real>
-using VectorOf = std::array<Real, 3>;
-
-template <class Real>
-Real product(const VectorOf<Real>& u, const VectorOf<Real>& v) {
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-}
-
-VectorOf<Digits> digits(const Vec3& v) { return {Digits(v.x), Digits(v.y), Digits(v.z)}; }
-VectorOf<Digits> times(const Digits& s, const VectorOf<Digits>& v) { return {s * v[0], s * v[1], s * v[2]}; }
-VectorOf<Digits> minus(const VectorOf<Digits>& u, const VectorOf<Digits>& v) {
-    return {u[0] - v[0], u[1] - v[1], u[2] - v[2]};
-}
-VectorOf<Digits> unit(const VectorOf<Digits>& v) { return times(1 / sqrt(product(v, v)), v); }
-VectorOf<Digits> across(const VectorOf<Digits>& u, const VectorOf<Digits>& v) {
-    return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-}
+Vector<Digits> digits(const Vec3& v) { return {Digits(v.x), Digits(v.y), Digits(v.z)}; }
+Vector<Digits> unit(const Vector<Digits>& v) { return times<Digits>(1 / sqrt(product(v, v)), v); }
 Digits square(const Digits& x) { return x * x; }
 double square(double x) { return x * x; }
 
@@ -62,30 +48,30 @@ int sign_of(const Digits& x, const Digits& bound) { return (x > bound ? 1 : 0) -
 struct CheckedShape::Impl {
     Impl(const AffineMap& map, bool is_cylinder);
 
-    [[nodiscard]] VectorOf<double> rough_local(const Vec3& p) const;
-    [[nodiscard]] VectorOf<Digits> local(const Vec3& p) const;
+    [[nodiscard]] Vector<double> rough_local(const Vec3& p) const;
+    [[nodiscard]] Vector<Digits> local(const Vec3& p) const;
     [[nodiscard]] int rough_side(const Vec3& p) const;
-    [[nodiscard]] int exact_side(const VectorOf<Digits>& y) const;
-    [[nodiscard]] Digits round_value(const VectorOf<Digits>& y) const;
+    [[nodiscard]] int exact_side(const Vector<Digits>& y) const;
+    [[nodiscard]] Digits round_value(const Vector<Digits>& y) const;
     [[nodiscard]] bool box_misses(const Vec3& p, const Vec3& q) const;
     [[nodiscard]] bool is_roughly_apart(const Vec3& p, const Vec3& q) const;
-    [[nodiscard]] bool is_apart(const VectorOf<Digits>& from, const VectorOf<Digits>& to) const;
+    [[nodiscard]] bool is_apart(const Vector<Digits>& from, const Vector<Digits>& to) const;
     [[nodiscard]] bool is_certainly_clear(const Vec3& p, double least) const;
-    [[nodiscard]] Digits square_distance_from_round(const VectorOf<Digits>& y) const;
-    [[nodiscard]] Digits square_distance(const VectorOf<Digits>& y) const;
+    [[nodiscard]] Digits square_distance_from_round(const Vector<Digits>& y) const;
+    [[nodiscard]] Digits square_distance(const Vector<Digits>& y) const;
 
     Vec3 center;
-    std::size_t round_axes;           ///< number of round axes: 3, or 2 for a cylinder with caps
-    VectorOf<double> half{};          ///< lengths of the half axes, in m
-    VectorOf<VectorOf<Digits>> axes;  ///< unit vectors
-    VectorOf<Vec3> rough_axes;
+    std::size_t round_axes;       ///< number of round axes: 3, or 2 for a cylinder with caps
+    Vector<double> half{};        ///< lengths of the half axes, in m
+    Vector<Vector<Digits>> axes;  ///< unit vectors
+    Vector<Vec3> rough_axes;
     double smallest = 0.0;  ///< smallest half axis of the round axes, in m
     Box3 box;
 };
 
 CheckedShape::Impl::Impl(const AffineMap& map, bool is_cylinder)
     : center(map.translation), round_axes(is_cylinder ? 2 : 3) {
-    VectorOf<VectorOf<Digits>> columns;
+    Vector<Vector<Digits>> columns;
     for (int i = 0; i < 3; ++i) {
         const auto k = static_cast<std::size_t>(i);
         columns[k] = digits({map.row_x[i], map.row_y[i], map.row_z[i]});
@@ -100,7 +86,7 @@ CheckedShape::Impl::Impl(const AffineMap& map, bool is_cylinder)
         smallest = middle;
     }
     axes[0] = unit(columns[0]);
-    axes[1] = unit(minus(columns[1], times(product(columns[1], axes[0]), axes[0])));
+    axes[1] = unit(less(columns[1], times(product(columns[1], axes[0]), axes[0])));
     axes[2] = across(axes[0], axes[1]);
     Vec3 reach;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -109,22 +95,21 @@ CheckedShape::Impl::Impl(const AffineMap& map, bool is_cylinder)
         reach += half[i] * abs(rough_axes[i]);
     }
     reach += kShapeBoxMargin * (reach + abs(center));
-    box.include(center - reach);
-    box.include(center + reach);
+    box = {center - reach, center + reach};
 }
 
-VectorOf<double> CheckedShape::Impl::rough_local(const Vec3& p) const {
+Vector<double> CheckedShape::Impl::rough_local(const Vec3& p) const {
     const Vec3 w = p - center;
     return {dot(rough_axes[0], w), dot(rough_axes[1], w), dot(rough_axes[2], w)};
 }
 
-VectorOf<Digits> CheckedShape::Impl::local(const Vec3& p) const {
-    const VectorOf<Digits> w = minus(digits(p), digits(center));
+Vector<Digits> CheckedShape::Impl::local(const Vec3& p) const {
+    const Vector<Digits> w = difference<Digits>(p, center);
     return {product(axes[0], w), product(axes[1], w), product(axes[2], w)};
 }
 
 /// Returns a value that is zero on the round part of the surface, negative inside and positive outside.
-Digits CheckedShape::Impl::round_value(const VectorOf<Digits>& y) const {
+Digits CheckedShape::Impl::round_value(const Vector<Digits>& y) const {
     Digits value = -1;
     for (std::size_t i = 0; i < round_axes; ++i) value += square(Digits(y[i] / half[i]));
     return value;
@@ -132,7 +117,7 @@ Digits CheckedShape::Impl::round_value(const VectorOf<Digits>& y) const {
 
 /// Returns the side computed in doubles, or 0 if the error bound leaves doubt.
 int CheckedShape::Impl::rough_side(const Vec3& p) const {
-    const VectorOf<double> y = rough_local(p);
+    const Vector<double> y = rough_local(p);
     const double error = kRoughError * length(p - center);
     double value = -1.0;
     double bound = kRoughError;
@@ -149,7 +134,7 @@ int CheckedShape::Impl::rough_side(const Vec3& p) const {
     return is_within && height < -cap_bound ? -1 : 0;
 }
 
-int CheckedShape::Impl::exact_side(const VectorOf<Digits>& y) const {
+int CheckedShape::Impl::exact_side(const Vector<Digits>& y) const {
     const int around = sign_of(round_value(y), kOnSurface);
     if (round_axes == 3) return around;
     return std::max(around, sign_of(Digits(abs(y[2]) / half[2] - 1), kOnSurface));
@@ -164,8 +149,8 @@ bool CheckedShape::Impl::box_misses(const Vec3& p, const Vec3& q) const {
 /// Returns true if doubles prove that the whole segment is outside. Along the segment, the value is a quadratic
 /// polynomial of t. The error bound of its terms covers a few roundings and the errors of the coordinates.
 bool CheckedShape::Impl::is_roughly_apart(const Vec3& p, const Vec3& q) const {
-    const VectorOf<double> from = rough_local(p);
-    const VectorOf<double> to = rough_local(q);
+    const Vector<double> from = rough_local(p);
+    const Vector<double> to = rough_local(q);
     const double error = kRoughError * std::max(length(p - center), length(q - center));
     if (round_axes == 2) {
         const double above = half[2] + 2.0 * (error + kRoughError * half[2]);
@@ -189,8 +174,8 @@ bool CheckedShape::Impl::is_roughly_apart(const Vec3& p, const Vec3& q) const {
 
 /// Returns true if the whole segment is outside. Both ends must be outside. Between the planes of the caps, the value
 /// along the segment has one minimum.
-bool CheckedShape::Impl::is_apart(const VectorOf<Digits>& from, const VectorOf<Digits>& to) const {
-    const VectorOf<Digits> step = minus(to, from);
+bool CheckedShape::Impl::is_apart(const Vector<Digits>& from, const Vector<Digits>& to) const {
+    const Vector<Digits> step = less(to, from);
     Digits first = 0;
     Digits last = 1;
     for (const int up : {1, -1}) {
@@ -209,7 +194,7 @@ bool CheckedShape::Impl::is_apart(const VectorOf<Digits>& from, const VectorOf<D
         curvature += square(Digits(step[i] / half[i]));
     }
     const Digits lowest = curvature == 0 ? first : std::clamp(Digits(-slope / curvature), first, last);
-    VectorOf<Digits> nearest = from;
+    Vector<Digits> nearest = from;
     for (std::size_t i = 0; i < 3; ++i) nearest[i] += lowest * step[i];
     return round_value(nearest) > kOnSurface;
 }
@@ -217,7 +202,7 @@ bool CheckedShape::Impl::is_apart(const VectorOf<Digits>& from, const VectorOf<D
 /// Returns true if doubles prove that the distance of p from the surface is above `least`. The map to the unit ball (or
 /// cylinder) multiplies lengths by at most 1 / smallest half axis.
 bool CheckedShape::Impl::is_certainly_clear(const Vec3& p, double least) const {
-    const VectorOf<double> y = rough_local(p);
+    const Vector<double> y = rough_local(p);
     double from_axis = 0.0;
     for (std::size_t i = 0; i < round_axes; ++i) from_axis += square(y[i] / half[i]);
     const double beside = smallest * (std::sqrt(from_axis) - 1.0);
@@ -230,8 +215,8 @@ bool CheckedShape::Impl::is_certainly_clear(const Vec3& p, double least) const {
 /// sum y_i^2 m / (a_i^2 + m) - m is a lower bound of the squared distance. The best multiplier gives equality, because
 /// Lagrange duality with one quadratic constraint has no gap. The multiplier is found in doubles. The error of the
 /// result is proportional to the square of the multiplier's error.
-Digits CheckedShape::Impl::square_distance_from_round(const VectorOf<Digits>& y) const {
-    VectorOf<double> rough{};
+Digits CheckedShape::Impl::square_distance_from_round(const Vector<Digits>& y) const {
+    Vector<double> rough{};
     double sum = 0.0;
     for (std::size_t i = 0; i < round_axes; ++i) {
         rough[i] = static_cast<double>(y[i]);
@@ -265,7 +250,7 @@ Digits CheckedShape::Impl::square_distance_from_round(const VectorOf<Digits>& y)
 
 /// Returns the squared distance from the surface. Outside a cylinder, the squared distances from side and cap are
 /// combined. Inside, the smaller of the two is returned.
-Digits CheckedShape::Impl::square_distance(const VectorOf<Digits>& y) const {
+Digits CheckedShape::Impl::square_distance(const Vector<Digits>& y) const {
     Digits around = square_distance_from_round(y);
     if (round_axes == 3) return around;
     const Digits height = abs(y[2]) - half[2];
@@ -300,9 +285,9 @@ bool CheckedShape::intersects(const Vec3& p, const Vec3& q) const {
 bool CheckedShape::intersects_after_start(const Vec3& p, const Vec3& q) const {
     const int of_q = side(q);
     if (of_q <= 0) return of_q == 0;
-    const VectorOf<Digits> from = impl_->local(p);
-    const VectorOf<Digits> to = impl_->local(q);
-    VectorOf<Digits> next = from;
+    const Vector<Digits> from = impl_->local(p);
+    const Vector<Digits> to = impl_->local(q);
+    Vector<Digits> next = from;
     for (std::size_t i = 0; i < 3; ++i) next[i] += (to[i] - from[i]) * Digits(0x1p-40);
     return impl_->exact_side(next) <= 0 || !impl_->is_apart(next, to);
 }

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <utility>
+
+#include "ricochet/verify/wide_vector.h"
 
 namespace ricochet::verify {
 namespace {
@@ -163,11 +164,6 @@ Offset<Real> offset_of(const StepPath& from, const StepPath& to, double begin, d
     return offset;
 }
 
-/// A vector of numbers that may have more digits than doubles. Near an edge, a direction perpendicular to the edge
-/// depends on the square of the distance. If the distance is small, doubles lose this information.
-template <class Real>
-using Vector = std::array<Real, 3>;
-
 template <class Real>
 Vector<Real> at(const StepPath& path, double part) {
     const Real rest = 1 - Real(part);
@@ -177,26 +173,6 @@ Vector<Real> at(const StepPath& path, double part) {
         point[k] = rest * Real(path.from[axis]) + Real(part) * Real(path.to[axis]);
     }
     return point;
-}
-
-template <class Real>
-Vector<Real> less(const Vector<Real>& a, const Vector<Real>& b) {
-    return {Real(a[0] - b[0]), Real(a[1] - b[1]), Real(a[2] - b[2])};
-}
-
-template <class Real>
-Vector<Real> times(const Real& factor, const Vector<Real>& a) {
-    return {Real(factor * a[0]), Real(factor * a[1]), Real(factor * a[2])};
-}
-
-template <class Real>
-Real product(const Vector<Real>& a, const Vector<Real>& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-template <class Real>
-Vector<Real> across(const Vector<Real>& a, const Vector<Real>& b) {
-    return {Real(a[1] * b[2] - a[2] * b[1]), Real(a[2] * b[0] - a[0] * b[2]), Real(a[0] * b[1] - a[1] * b[0])};
 }
 
 /// Returns the direction or its opposite, such that its scalar product with the offset is not negative.
@@ -293,9 +269,11 @@ private:
         });
     }
 
-    /// Returns candidate directions along which the point may be beyond the whole triangle. The last two directions are
-    /// for triangles with almost no area, which are treated as their longest edge. The first of these leads from the
-    /// edge to the point. The second is perpendicular to the edge and to the path of the point relative to the edge.
+    /// Returns candidate directions along which the point may be beyond the whole triangle. Near an edge, a direction
+    /// perpendicular to the edge depends on the square of the distance, which doubles may lose. The last two directions
+    /// are for triangles with almost no area, which are treated as their longest edge. The first of these leads from
+    /// the edge to the point. The second is perpendicular to the edge and to the path of the point relative to the
+    /// edge.
     template <class Real>
     [[nodiscard]] std::array<Vector<Real>, 7> directions_at(double middle, double begin, double end) const {
         const Vector<Real> p = at<Real>(point_, middle);

@@ -2,12 +2,10 @@
 /// Search for overlapping spheres with a binary tree. It shares no code with the search for impacts.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "ricochet/core/box3.h"
 #include "ricochet/core/vec3.h"
 
 namespace ricochet {
@@ -52,20 +50,6 @@ public:
     [[nodiscard]] double largest() const { return largest_; }
 
 private:
-    struct Node {
-        Box3 box;             // bounding box of the spheres, in m
-        std::uint32_t begin;  // range of the node's spheres in order_
-        std::uint32_t end;
-        std::uint32_t children;  // index of the first of two children; 0: a leaf
-    };
-
-    void build(std::span<const StandingSphere> spheres);
-    void split(std::uint32_t node, std::span<const StandingSphere> spheres);
-    void find(std::span<const StandingSphere> spheres, std::uint32_t i, double most, std::vector<Found>& deep,
-              std::vector<std::array<std::uint64_t, 2>>& born);
-
-    std::vector<Node> nodes_;
-    std::vector<std::uint32_t> order_;
     std::vector<Found> before_;  // overlaps of the last call, in ascending order of the ids
     double largest_ = 0.0;
 };

@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "ricochet/verify/wide_vector.h"
+
 namespace ricochet::verify {
 
 namespace {
@@ -32,24 +34,16 @@ int certain_sign(Real value, Real magnitude) {
 }
 
 template <class Real>
-struct Vector {
-    Real x, y, z;
-};
-
-template <class Real>
-Vector<Real> between(const Vec3& from, const Vec3& to) {
-    return {static_cast<Real>(to.x) - static_cast<Real>(from.x), static_cast<Real>(to.y) - static_cast<Real>(from.y),
-            static_cast<Real>(to.z) - static_cast<Real>(from.z)};
-}
-
-template <class Real>
 int filtered_spatial_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
-    const Vector<Real> u = between<Real>(a, b), v = between<Real>(a, c), w = between<Real>(a, p);
-    const Real yz = u.y * v.z, zy = u.z * v.y, zx = u.z * v.x, xz = u.x * v.z, xy = u.x * v.y, yx = u.y * v.x;
-    const Real value = (yz - zy) * w.x + (zx - xz) * w.y + (xy - yx) * w.z;
-    const Real magnitude = (std::fabs(yz) + std::fabs(zy)) * std::fabs(w.x) +
-                           (std::fabs(zx) + std::fabs(xz)) * std::fabs(w.y) +
-                           (std::fabs(xy) + std::fabs(yx)) * std::fabs(w.z);
+    const Vector<Real> u = difference<Real>(b, a), v = difference<Real>(c, a), w = difference<Real>(p, a);
+    Real value = 0;
+    Real magnitude = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+        const Real plus = u[j] * v[k], minus = u[k] * v[j];
+        value += (plus - minus) * w[i];
+        magnitude += (std::fabs(plus) + std::fabs(minus)) * std::fabs(w[i]);
+    }
     return certain_sign(value, magnitude);
 }
 
@@ -92,11 +86,8 @@ Integer whole(double x, const Scale& scale) {
 }
 
 template <class Integer>
-using WholePoint = std::array<Integer, 3>;
-
-template <class Integer>
-WholePoint<Integer> whole_between(const Vec3& from, const Vec3& to, const Scale& scale) {
-    WholePoint<Integer> difference;
+Vector<Integer> whole_between(const Vec3& from, const Vec3& to, const Scale& scale) {
+    Vector<Integer> difference;
     for (int axis = 0; axis < 3; ++axis) {
         difference[static_cast<std::size_t>(axis)] =
             whole<Integer>(to[axis], scale) - whole<Integer>(from[axis], scale);
@@ -109,10 +100,7 @@ int exact_spatial_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& 
     const auto u = whole_between<Integer>(a, b, scale);
     const auto v = whole_between<Integer>(a, c, scale);
     const auto w = whole_between<Integer>(a, p, scale);
-    const Integer x = u[1] * v[2] - u[2] * v[1];
-    const Integer y = u[2] * v[0] - u[0] * v[2];
-    const Integer z = u[0] * v[1] - u[1] * v[0];
-    return Integer(x * w[0] + y * w[1] + z * w[2]).sign();
+    return product(across(u, v), w).sign();
 }
 
 template <class Integer>
@@ -226,52 +214,34 @@ namespace {
 /// roundings of 2^-53. Local: an error bound of the formulas in this file.
 constexpr double kProductError = 0x1p-49;
 
-template <class Real>
-using VectorOf = std::array<Real, 3>;
-
-template <class Real>
-VectorOf<Real> difference(const Vec3& u, const Vec3& v) {
-    return {Real(Real(u.x) - v.x), Real(Real(u.y) - v.y), Real(Real(u.z) - v.z)};
-}
-
-template <class Real>
-VectorOf<Real> less(const VectorOf<Real>& u, const Real& part, const VectorOf<Real>& v) {
-    return {Real(u[0] - part * v[0]), Real(u[1] - part * v[1]), Real(u[2] - part * v[2])};
-}
-
-template <class Real>
-Real product(const VectorOf<Real>& u, const VectorOf<Real>& v) {
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-}
-
 /// Returns the offset to p from the nearest point of the triangle. This is the shortest of the offsets from the three
 /// sides and from the plane. The plane is used only if its point nearest to p lies on the triangle.
 template <class Real>
-VectorOf<Real> offset_from(const Vec3& p, const Corners& t) {
-    VectorOf<Real> best = difference<Real>(p, t.a);
+Vector<Real> offset_from(const Vec3& p, const Corners& t) {
+    Vector<Real> best = difference<Real>(p, t.a);
     Real least = product(best, best);
-    const auto consider = [&](const VectorOf<Real>& offset) {
+    const auto consider = [&](const Vector<Real>& offset) {
         const Real square = product(offset, offset);
         if (!(square < least)) return;
         least = square;
         best = offset;
     };
     const auto consider_side = [&](const Vec3& from, const Vec3& to) {
-        const VectorOf<Real> side = difference<Real>(to, from);
-        const VectorOf<Real> offset = difference<Real>(p, from);
+        const Vector<Real> side = difference<Real>(to, from);
+        const Vector<Real> offset = difference<Real>(p, from);
         const Real part = product(offset, side) / product(side, side);
-        consider(less<Real>(offset, std::clamp<Real>(part, Real(0), Real(1)), side));
+        consider(less(offset, times(std::clamp<Real>(part, Real(0), Real(1)), side)));
     };
     consider_side(t.a, t.b);
     consider_side(t.b, t.c);
     consider_side(t.c, t.a);
-    const VectorOf<Real> u = difference<Real>(t.b, t.a), v = difference<Real>(t.c, t.a), w = difference<Real>(p, t.a);
+    const Vector<Real> u = difference<Real>(t.b, t.a), v = difference<Real>(t.c, t.a), w = difference<Real>(p, t.a);
     const Real uu = product(u, u), uv = product(u, v), vv = product(v, v), wu = product(w, u), wv = product(w, v);
     const Real determinant = uu * vv - uv * uv;
     if (!(determinant > 0)) return best;
     const Real x = (wu * vv - wv * uv) / determinant;
     const Real y = (wv * uu - wu * uv) / determinant;
-    if (x >= 0 && y >= 0 && x + y <= 1) consider(less<Real>(less<Real>(w, x, u), y, v));
+    if (x >= 0 && y >= 0 && x + y <= 1) consider(less(less(w, times(x, u)), times(y, v)));
     return best;
 }
 
@@ -280,7 +250,7 @@ VectorOf<Real> offset_from(const Vec3& p, const Corners& t) {
 /// direction of the plane's normal. The direction used here may therefore differ slightly from the direction of the
 /// nearest point.
 bool is_certainly_clear(const Vec3& p, const Corners& t, double least) {
-    const VectorOf<double> offset = offset_from<double>(p, t);
+    const Vector<double> offset = offset_from<double>(p, t);
     const Vec3 direction{offset[0], offset[1], offset[2]};
     const double size = length(direction);
     if (!(size > 0.0)) return false;
@@ -297,7 +267,7 @@ using Digits = boost::multiprecision::cpp_bin_float_100;
 
 bool is_nearer(const Vec3& p, const Corners& t, double least) {
     if (is_certainly_clear(p, t, least)) return false;
-    const VectorOf<Digits> offset = offset_from<Digits>(p, t);
+    const Vector<Digits> offset = offset_from<Digits>(p, t);
     return product(offset, offset) < Digits(least) * least;
 }
 
@@ -307,7 +277,7 @@ bool is_nearer(const Vec3& p, const Vec3& point, const Vec3& normal, double leas
     if (std::fabs(dot(normal, w)) - kProductError * size * length(w) >= (1.0 + kProductError) * size * least) {
         return false;
     }
-    const VectorOf<Digits> n = difference<Digits>(normal, Vec3{});
+    const Vector<Digits> n = difference<Digits>(normal, Vec3{});
     const Digits height = product(n, difference<Digits>(p, point));
     return height * height < product(n, n) * Digits(least) * least;
 }

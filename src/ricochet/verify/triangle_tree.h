@@ -1,16 +1,15 @@
 /// \file
-/// The verifier's own bounding volume hierarchy, in doubles. Queries find all triangles near a segment or a box, and
-/// possibly further triangles.
+/// Tree of triangles. Queries find all triangles near a segment or a box, and possibly further triangles.
 #pragma once
 
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "ricochet/core/box3.h"
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/vec3.h"
+#include "ricochet/verify/item_tree.h"
 #include "ricochet/verify/triangle_tests.h"
 
 namespace ricochet::verify {
@@ -26,48 +25,32 @@ struct NamedTriangle {
 class TriangleTree {
 public:
     TriangleTree() = default;
-    explicit TriangleTree(std::vector<NamedTriangle> triangles);
+    explicit TriangleTree(const std::vector<NamedTriangle>& triangles);
 
     /// Calls visit(triangle) for every triangle whose box touches the segment [p, q], and possibly for a few further
     /// triangles.
     template <class Visit>
     void near_segment(const Vec3& p, const Vec3& q, const Visit& visit) const {
-        if (!nodes_.empty()) visit_nodes(SegmentTest(p, q, largest_), visit);
+        visit_near(SegmentTest(p, q, largest_), visit);
     }
     /// Calls visit(triangle) for every triangle whose box touches `box`.
     template <class Visit>
     void near_box(const Box3& box, const Visit& visit) const {
-        if (!nodes_.empty()) visit_nodes([&](const Box3& other) { return touches(box, other); }, visit);
+        visit_near([&](const Box3& other) { return overlap(box, other); }, visit);
     }
 
 private:
-    struct Node {
-        Box3 box;
-        /// First triangle of a leaf, or second child of another node. The first child is the next node.
-        std::uint32_t first = 0;
-        std::uint32_t count = 0;  ///< number of triangles of a leaf; 0 for other nodes
-    };
-
-    static bool touches(const Box3& a, const Box3& b) {
-        // The code has no branches, because they would often be mispredicted.
-        const bool x = (a.lower.x <= b.upper.x) & (b.lower.x <= a.upper.x);
-        const bool y = (a.lower.y <= b.upper.y) & (b.lower.y <= a.upper.y);
-        const bool z = (a.lower.z <= b.upper.z) & (b.lower.z <= a.upper.z);
-        return x & y & z;
-    }
-
     /// Separating axis test of a segment and a box. The coordinate axes need no tolerance, because their comparisons
     /// have no rounding. Axes perpendicular to the segment and to a coordinate axis use the tolerance slack_.
     class SegmentTest {
     public:
-        SegmentTest(const Vec3& p, const Vec3& q, double largest) : start_(p), step_(q - p), size_(abs(step_)) {
-            box_.include(p);
-            box_.include(q);
+        SegmentTest(const Vec3& p, const Vec3& q, double largest)
+            : box_(box_around(p, q)), start_(p), step_(q - p), size_(abs(step_)) {
             // Each product below has about 5 roundings of 2^-53, relative to coordinates of this size.
             slack_ = 0x1p-48 * std::fmax(largest, std::fmax(max_abs(p), max_abs(q)));
         }
         bool operator()(const Box3& box) const {
-            if (!touches(box_, box)) return false;
+            if (!overlap(box_, box)) return false;
             const Vec3 half = 0.5 * (box.upper - box.lower);
             // A segment that is short compared with the box seldom misses the box, so the exact test would not pay off.
             if (max_abs(size_) < max_abs(half)) return true;
@@ -89,34 +72,19 @@ private:
         double slack_ = 0.0;
     };
 
+    /// Calls visit(triangle) for every triangle whose box passes a test.
     template <class Test, class Visit>
-    void visit_nodes(const Test& test, const Visit& visit) const {
-        std::array<std::uint32_t, kMostDepth> open{};
-        std::size_t count = 0;
-        open[count++] = 0;
-        while (count > 0) {
-            const std::uint32_t index = open[--count];
-            const Node& node = nodes_[index];
-            if (!test(node.box)) continue;
-            if (node.count == 0) {
-                open[count++] = node.first;
-                open[count++] = index + 1;
-                continue;
-            }
-            for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
-                if (test(boxes_[k])) visit(triangles_[k]);
-            }
-        }
+    void visit_near(const Test& test, const Visit& visit) const {
+        tree_.visit([&](std::uint32_t node) { return test(node_boxes_[node]); },
+                    [&](std::uint32_t k) {
+                        if (test(boxes_[k])) visit(triangles_[k]);
+                    });
     }
 
-    void build(std::size_t begin, std::size_t end, const std::vector<Box3>& boxes, std::vector<std::uint32_t>& order);
-
-    /// Upper bound of the depth. Repeated halving of 2^32 triangles gives fewer levels.
-    static constexpr std::size_t kMostDepth = 48;
-
+    ItemTree tree_;
     std::vector<NamedTriangle> triangles_;  ///< triangles in the order of the leaves
     std::vector<Box3> boxes_;               ///< one box per triangle
-    std::vector<Node> nodes_;               ///< nodes in depth-first order
+    std::vector<Box3> node_boxes_;          ///< one box per node of the tree
     double largest_ = 0.0;                  ///< largest coordinate, in m
 };
 

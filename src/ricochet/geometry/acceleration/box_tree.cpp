@@ -78,8 +78,7 @@ void BoxTree::halve(std::uint32_t begin, std::uint32_t middle, std::uint32_t end
     if (middle <= begin || middle >= end) return;
     Box3 centers;
     for (std::uint32_t k = begin; k < end; ++k) centers.include(boxes[order_[k]].center());
-    const Vec3 size = centers.size();
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+    const int axis = longest_axis(centers.size());
     const auto is_before = [&](std::uint32_t a, std::uint32_t b) {
         const double at_a = boxes[a].lower[axis] + boxes[a].upper[axis];
         const double at_b = boxes[b].lower[axis] + boxes[b].upper[axis];

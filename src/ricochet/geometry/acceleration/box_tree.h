@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "ricochet/core/box3.h"
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/parallel.h"
 
 namespace ricochet {
@@ -64,7 +65,7 @@ public:
                 const std::uint32_t child = node.child[lane];
                 if ((child & kBox) == 0) {
                     open[count++] = child;
-                } else if (const std::uint32_t k = child & ~kBox; meet(boxes_[k], box) && is_it(order_[k])) {
+                } else if (const std::uint32_t k = child & ~kBox; overlap(boxes_[k], box) && is_it(order_[k])) {
                     return true;
                 }
             }
@@ -77,14 +78,6 @@ public:
     }
     /// Returns a box around all boxes. It is empty if there are no boxes.
     [[nodiscard]] const Box3& bounds() const { return bounds_; }
-
-    /// Returns true if two boxes have a point in common.
-    [[nodiscard]] static bool meet(const Box3& a, const Box3& b) {
-        const bool x = (a.lower.x <= b.upper.x) & (b.lower.x <= a.upper.x);
-        const bool y = (a.lower.y <= b.upper.y) & (b.lower.y <= a.upper.y);
-        const bool z = (a.lower.z <= b.upper.z) & (b.lower.z <= a.upper.z);
-        return x & y & z;
-    }
 
 private:
     using Quad = float __attribute__((vector_size(16)));

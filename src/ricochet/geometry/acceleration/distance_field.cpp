@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 
@@ -45,9 +46,8 @@ struct Extents {
 
 Extents extents_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
     const auto extent = [&](std::size_t t) {
-        Box3 box;
-        for (const std::uint32_t v : triangles[t]) box.include(vertices[v]);
-        return max_abs(box.size());
+        const auto& [a, b, c] = triangles[t];
+        return max_abs(box_around(vertices[a], vertices[b], vertices[c]).size());
     };
     const auto sum_of = [&](const auto& term) {
         return ordered_sum(triangles.size(), kTrianglesPerBlock, [&](std::size_t begin, std::size_t end) {
@@ -108,8 +108,7 @@ void DistanceField::choose_cells(std::size_t most, const std::function<bool(doub
 
 /// Marks the cells that may contain a part of a triangle. corners: in units of cells. Large triangles are bisected.
 void DistanceField::mark(const std::array<Vec3, 3>& corners) {
-    Box3 box;
-    for (const Vec3& corner : corners) box.include(corner);
+    const Box3 box = box_around(corners[0], corners[1], corners[2]);
     if (max_abs(box.size()) <= 1.0) {
         mark_cells_of(box);
         return;

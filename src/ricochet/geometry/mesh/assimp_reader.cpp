@@ -37,7 +37,7 @@ class AssimpReader {
 public:
     AssimpReader(const MeshSource& source, const aiScene& scene) : source_(source), scene_(scene) {}
 
-    ParsedMesh read(std::string format) {
+    ImportedMesh read(std::string format) {
         std::vector<Open> open = {{scene_.mRootNode, {}}};
         while (!open.empty()) {
             const Open at = open.back();
@@ -46,7 +46,7 @@ public:
             for (unsigned m = 0; m < at.node->mNumMeshes; ++m) add(*at.node, mesh_at(at.node->mMeshes[m]), world);
             for (unsigned c = at.node->mNumChildren; c-- > 0;) open.push_back({at.node->mChildren[c], world});
         }
-        ParsedMesh result = builder_.finish(std::move(format));
+        ImportedMesh result = builder_.finish(std::move(format));
         result.notes = notes();
         return result;
     }
@@ -119,7 +119,7 @@ private:
 
 }  // namespace
 
-ParsedMesh read_foreign(const MeshSource& source, const std::string& extension) {
+ImportedMesh read_foreign(const MeshSource& source, const std::string& extension) {
     Assimp::Importer importer;
     importer.SetIOHandler(new NoFiles);                                          // the importer takes ownership
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // names instead of ids

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <utility>
 
@@ -11,8 +10,6 @@
 
 namespace ricochet {
 namespace {
-
-constexpr std::uint32_t kUnknown = std::numeric_limits<std::uint32_t>::max();
 
 /// Parity of the number of faces at the edges of a shell.
 struct ShellParity {
@@ -70,16 +67,9 @@ ClosedSurface choose_by_shell(const FaceList& faces, const EdgeTable& edges, std
 
 /// Returns the mesh without the triangles in left_out, whose indices are in increasing order.
 TriangleMesh without(TriangleMesh mesh, const std::vector<std::uint32_t>& left_out) {
-    auto next = left_out.begin();
-    std::size_t kept = 0;
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-        if (next != left_out.end() && *next == t) {
-            ++next;
-        } else {
-            mesh.triangles[kept++] = mesh.triangles[t];
-        }
-    }
-    mesh.triangles.resize(kept);
+    std::vector<Triangle> kept;
+    for_each_counted(mesh, left_out, [&](std::uint32_t t) { kept.push_back(mesh.triangles[t]); });
+    mesh.triangles = std::move(kept);
     return mesh;
 }
 
@@ -108,18 +98,12 @@ TriangleMesh joined_by_position(const TriangleMesh& mesh) {
     TriangleMesh joined = mesh;
     std::vector<Vec3> positions;
     std::vector<std::uint32_t> first_at;  // vertex, per position
-    std::vector<std::uint32_t> renamed(mesh.vertices.size(), kUnknown);
     VertexWelder welder(positions);
-    for (Triangle& t : joined.triangles) {
-        for (std::uint32_t& v : t) {
-            if (renamed[v] == kUnknown) {
-                const std::uint32_t position = welder.index_of(mesh.vertices[v]);
-                if (position == first_at.size()) first_at.push_back(v);
-                renamed[v] = first_at[position];
-            }
-            v = renamed[v];
-        }
-    }
+    rename_corners(joined, [&](std::uint32_t v) {
+        const std::uint32_t position = welder.index_of(mesh.vertices[v]);
+        if (position == first_at.size()) first_at.push_back(v);
+        return first_at[position];
+    });
     return joined;
 }
 

@@ -26,6 +26,19 @@ struct ClosedSurface {
     std::vector<std::uint32_t> left_out;  ///< repeated faces that do not count, in increasing order
 };
 
+/// Calls use(triangle) for all triangles of a mesh that are not left out. left_out: in increasing order.
+template <class Use>
+void for_each_counted(const TriangleMesh& mesh, const std::vector<std::uint32_t>& left_out, const Use& use) {
+    auto skipped = left_out.begin();
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (skipped != left_out.end() && *skipped == t) {
+            ++skipped;
+        } else {
+            use(t);
+        }
+    }
+}
+
 /// Examines faces whose vertices at equal positions are already joined. Time and memory are close to linear in the
 /// number of corners.
 [[nodiscard]] ClosedSurface closed_surface(const FaceList& faces, const EdgeTable& edges);

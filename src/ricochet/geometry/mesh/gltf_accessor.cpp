@@ -1,16 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 #include <limits>
 
 #include "ricochet/geometry/mesh/gltf_buffers.h"
 
 namespace ricochet {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "glTF is copied from little-endian bytes");
 
 // Numbers of component types in the file. They are the OpenGL constants.
 constexpr std::uint64_t kInt8 = 5120;
@@ -37,13 +33,6 @@ std::size_t bytes_of_type(const GltfLocation& location, std::uint64_t type) {
 }
 
 bool is_index_type(std::uint64_t type) { return type == kUint8 || type == kUint16 || type == kUint32; }
-
-template <typename Value>
-Value value_at(const char* at) {
-    Value value;
-    std::memcpy(&value, at, sizeof value);
-    return value;
-}
 
 std::uint32_t index_at(std::uint64_t type, const char* at) {
     if (type == kUint8) return value_at<std::uint8_t>(at);
@@ -149,14 +138,9 @@ void GltfAccessor::read_sparse(const GltfLocation& accessor, GltfBuffers& buffer
         }
         sparse_indices_.push_back(index);
     }
-    read_sparse_values(sparse, buffers);
-}
-
-void GltfAccessor::read_sparse_values(const GltfLocation& sparse, GltfBuffers& buffers) {
     const GltfLocation values = sparse.at("values");
     const std::size_t element = components_ * component_bytes_;
-    sparse_values_ =
-        require_bytes(values, buffers.view(values, "bufferView").bytes, sparse_indices_.size(), element, element);
+    sparse_values_ = require_bytes(values, buffers.view(values, "bufferView").bytes, count, element, element);
 }
 
 const char* GltfAccessor::element(std::size_t i) const {
@@ -195,9 +179,7 @@ std::uint32_t GltfAccessor::index(std::size_t i) const {
 }
 
 std::uint32_t GltfAccessor::no_index() const {
-    if (type_ == kUint8) return std::numeric_limits<std::uint8_t>::max();
-    if (type_ == kUint16) return std::numeric_limits<std::uint16_t>::max();
-    return std::numeric_limits<std::uint32_t>::max();
+    return std::numeric_limits<std::uint32_t>::max() >> (32 - 8 * component_bytes_);
 }
 
 }  // namespace ricochet

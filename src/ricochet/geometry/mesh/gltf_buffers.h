@@ -74,7 +74,6 @@ private:
     GltfAccessor(const GltfLocation& accessor, GltfBuffers& buffers, std::size_t components);
 
     void read_sparse(const GltfLocation& accessor, GltfBuffers& buffers);
-    void read_sparse_values(const GltfLocation& sparse, GltfBuffers& buffers);
     [[nodiscard]] const char* element(std::size_t i) const;
     [[nodiscard]] double component(const char* at) const;
 

@@ -39,11 +39,6 @@ constexpr std::array<std::string_view, 13> kLeftOut = {"extras",
                                                        "target",
                                                        "targets"};
 
-template <typename List>
-bool contains(const List& list, std::string_view word) {
-    return std::find(list.begin(), list.end(), word) != list.end();
-}
-
 // Builds the tree of stored values. Each open container is the last element of its parent, so pointers to open
 // containers stay valid.
 class GltfTreeBuilder final : public nlohmann::json_sax<Json> {

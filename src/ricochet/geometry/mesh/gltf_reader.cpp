@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cstring>
 #include <map>
 #include <utility>
 #include <vector>
@@ -28,9 +26,7 @@ struct GltfParts {
 };
 
 std::uint32_t number_at(const MeshSource& source, std::size_t byte) {
-    std::uint32_t value = 0;
-    std::memcpy(&value, source.bytes.data() + byte, sizeof value);
-    return value;
+    return value_at<std::uint32_t>(source.bytes.data() + byte);
 }
 
 // A GLB file has a header of 12 bytes, then chunks. The length and the kind of a chunk precede its data.
@@ -106,13 +102,13 @@ public:
           free_corners_(free_corners),
           quantized_(uses_quantization(document)) {}
 
-    ParsedMesh read(std::string format) {
+    ImportedMesh read(std::string format) {
         require_known_extensions(document_);
         const GltfScenery scenery = placed_gltf_meshes(document_);
         hidden_nodes_ = scenery.hidden_nodes;
         reserve(scenery.meshes);
         for (const PlacedGltfMesh& one : scenery.meshes) add(one);
-        ParsedMesh result = builder_.finish(std::move(format));
+        ImportedMesh result = builder_.finish(std::move(format));
         result.files = buffers_.files();
         result.notes = notes();
         return result;
@@ -269,9 +265,8 @@ private:
 
 bool looks_like_glb(const MeshSource& source) { return source.bytes.starts_with(kGlbMagic); }
 
-ParsedMesh read_gltf(const MeshSource& source, const std::optional<std::filesystem::path>& folder,
-                     std::size_t free_corners) {
-    static_assert(std::endian::native == std::endian::little, "GLB is copied from little-endian bytes");
+ImportedMesh read_gltf(const MeshSource& source, const std::optional<std::filesystem::path>& folder,
+                       std::size_t free_corners) {
     GltfParts parts = parts_of(source);
     const GltfValue root = parse_gltf_json(source, parts.json);
     const GltfLocation document(source, root, "");

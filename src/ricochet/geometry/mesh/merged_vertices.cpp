@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "ricochet/core/error.h"
@@ -66,30 +67,22 @@ void require_tolerance(const TriangleMesh& mesh, double tolerance) {
                                  tolerance, std::max(least, std::numeric_limits<double>::min())));
 }
 
-template <typename Table>
-void rename(TriangleMesh& merged, const std::vector<Vec3>& vertices, Table& table) {
-    std::vector<std::uint32_t> renamed(vertices.size(), kUnknown);
-    for (Triangle& t : merged.triangles) {
-        for (std::uint32_t& v : t) {
-            if (renamed[v] == kUnknown) renamed[v] = table.index_of(vertices[v]);
-            v = renamed[v];
-        }
-    }
-}
-
 }  // namespace
 
 TriangleMesh merged_within(const TriangleMesh& mesh, double tolerance) {
     require_corners(mesh);
     require_tolerance(mesh, tolerance);
-    TriangleMesh merged{{}, mesh.triangles};
+    TriangleMesh merged = mesh;
+    std::vector<Vec3> kept;
+    const auto rename = [&](auto&& table) {
+        rename_corners(merged, [&](std::uint32_t v) { return table.index_of(mesh.vertices[v]); });
+    };
     if (tolerance == 0.0) {
-        VertexWelder welder(merged.vertices);
-        rename(merged, mesh.vertices, welder);
+        rename(VertexWelder(kept));
     } else {
-        VertexGrid grid(tolerance, merged.vertices);
-        rename(merged, mesh.vertices, grid);
+        rename(VertexGrid(tolerance, kept));
     }
+    merged.vertices = std::move(kept);
     const auto has_three = [](const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; };
     const auto count = [&](const TriangleMesh& some) {
         return std::count_if(some.triangles.begin(), some.triangles.end(), has_three);

@@ -1,10 +1,10 @@
 #include "ricochet/geometry/mesh/mesh_interior.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
@@ -43,22 +43,7 @@ int crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
 }
 
 bool is_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
-    Box3 box;
-    for (const Vec3& corner : {a, b, c}) box.include(corner);
-    return box.contains(p) && point_on_triangle(p, a, b, c);
-}
-
-/// Calls use(triangle) for all triangles of a mesh that are not left out.
-template <class Use>
-void for_each_counted(const TriangleMesh& mesh, const std::vector<std::uint32_t>& left_out, const Use& use) {
-    auto skipped = left_out.begin();
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-        if (skipped != left_out.end() && *skipped == t) {
-            ++skipped;
-        } else {
-            use(t);
-        }
-    }
+    return box_around(a, b, c).contains(p) && point_on_triangle(p, a, b, c);
 }
 
 }  // namespace
@@ -78,8 +63,7 @@ MeshInterior::MeshInterior(std::shared_ptr<const TriangleMesh> mesh, const std::
 }
 
 MeshInterior::Columns MeshInterior::columns_of(const Triangle& t) const {
-    Box3 box;
-    for (const std::uint32_t v : t) box.include(mesh_->vertices[v]);
+    const Box3 box = box_around(mesh_->vertices[t[0]], mesh_->vertices[t[1]], mesh_->vertices[t[2]]);
     return {{cell_of(box.lower.x, 0), cell_of(box.lower.y, 1)}, {cell_of(box.upper.x, 0), cell_of(box.upper.y, 1)}};
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <string>
 #include <utility>
 
 #include "ricochet/geometry/mesh/mesh_source.h"
@@ -26,18 +25,10 @@ std::optional<MeshFormat> format_of(const MeshSource& source, const std::filesys
     return std::nullopt;
 }
 
-// Converts only ASCII letters, independently of the locale, because file formats are ASCII.
-std::string ascii_lower(std::string text) {
-    for (char& c : text) {
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    }
-    return text;
-}
-
 /// Folder of a glTF file's buffers; nullopt for a file in memory.
 using Folder = std::optional<std::filesystem::path>;
 
-ParsedMesh parse(const MeshSource& source, const std::filesystem::path& path, const Folder& folder) {
+ImportedMesh parse(const MeshSource& source, const std::filesystem::path& path, const Folder& folder) {
     const std::optional<MeshFormat> format = format_of(source, path);
     if (!format) source.fail(fmt::format("unknown mesh format, expected a file of the format {}", kMeshFormats));
     switch (*format) {
@@ -57,10 +48,10 @@ ParsedMesh parse(const MeshSource& source, const std::filesystem::path& path, co
     return read_off(source);
 }
 
-ParsedMesh parse_checked(const std::filesystem::path& path, std::string_view bytes, const Folder& folder) {
+ImportedMesh parse_checked(const std::filesystem::path& path, std::string_view bytes, const Folder& folder) {
     const MeshSource source{path.string(), bytes};
     if (bytes.empty()) source.fail(fmt::format("empty file, expected a mesh of the format {}", kMeshFormats));
-    ParsedMesh parsed = parse(source, path, folder);
+    ImportedMesh parsed = parse(source, path, folder);
     if (parsed.polygons.face_count() == 0) {
         source.fail(fmt::format("no faces ({} vertices), expected a surface that particles can hit",
                                 parsed.polygons.vertices.size()));
@@ -77,14 +68,7 @@ void keep_triangles(ImportedMesh& imported) {
     if (imported.polygons.face_groups.empty()) imported.triangle_face = {};
 }
 
-ImportedMesh finish(ParsedMesh parsed, MeshContent content) {
-    ImportedMesh result;
-    result.polygons = std::move(parsed.polygons);
-    result.format = std::move(parsed.format);
-    result.weld = parsed.weld;
-    result.y_up = parsed.y_up;
-    result.files = std::move(parsed.files);
-    result.notes = std::move(parsed.notes);
+ImportedMesh with_triangles(ImportedMesh result, MeshContent content) {
     Triangulation triangulation = triangulate(result.polygons);
     result.mesh.triangles = std::move(triangulation.triangles);
     result.triangle_face = std::move(triangulation.triangle_face);
@@ -101,15 +85,15 @@ ImportedMesh finish(ParsedMesh parsed, MeshContent content) {
 }  // namespace
 
 ImportedMesh read_mesh(const std::filesystem::path& path, MeshContent content) {
-    ParsedMesh parsed = [&path] {
+    ImportedMesh parsed = [&path] {
         const FileBytes bytes = read_regular_file(path);
         return parse_checked(path, bytes.view(), path.parent_path());
     }();  // frees the file's bytes before triangulation
-    return finish(std::move(parsed), content);
+    return with_triangles(std::move(parsed), content);
 }
 
 ImportedMesh read_mesh(const std::filesystem::path& name, std::string_view bytes, MeshContent content) {
-    return finish(parse_checked(name, bytes, std::nullopt), content);
+    return with_triangles(parse_checked(name, bytes, std::nullopt), content);
 }
 
 std::optional<MeshFormat> mesh_format_of(const std::filesystem::path& path) {

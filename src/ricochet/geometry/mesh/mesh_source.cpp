@@ -8,12 +8,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
-#include <cmath>
 #include <cstring>
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/memory_limit.h"
-#include "ricochet/core/tolerances.h"
 
 namespace ricochet {
 namespace {
@@ -111,6 +109,14 @@ FileBytes read_regular_file(const std::filesystem::path& path) {
         done += static_cast<std::size_t>(count);
     }
     return bytes;
+}
+
+std::string ascii_lower(std::string_view text) {
+    std::string lower(text);
+    for (char& c : lower) {
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    }
+    return lower;
 }
 
 std::string in_quotes(std::string_view word) {

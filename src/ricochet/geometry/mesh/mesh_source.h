@@ -1,11 +1,15 @@
 /// \file
 /// Common parts of the mesh readers: a file's bytes, a text cursor, limits, errors, and the reader functions of all
-/// formats. Private to the mesh readers.
+/// formats. Private to the mesh readers. A reader of a format fills only the members of ImportedMesh that the file
+/// determines; read_mesh() adds the triangles.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -46,16 +50,6 @@ struct FileBytes {
 /// Reads a whole regular file. Throws InputError for anything else (folder, FIFO, device) without opening it.
 [[nodiscard]] FileBytes read_regular_file(const std::filesystem::path& path);
 
-/// Result of a format's reader: the faces as listed in the file.
-struct ParsedMesh {
-    PolygonMesh polygons;
-    std::string format;
-    std::optional<WeldReport> weld;
-    bool y_up = false;                           ///< the file has y up; the result has z up
-    std::vector<std::filesystem::path> files{};  ///< read besides the file itself
-    std::vector<std::string> notes{};            ///< notes on content that was not read, one sentence each
-};
-
 /// Largest number of vertices or corners. Files with more are refused, because indices have 32 bits.
 inline constexpr std::uint64_t kLargestIndexCount = std::numeric_limits<std::uint32_t>::max();
 
@@ -63,6 +57,23 @@ inline constexpr std::uint64_t kLargestIndexCount = std::numeric_limits<std::uin
 inline void close_face(PolygonMesh& mesh) {
     mesh.face_offsets.push_back(static_cast<std::uint32_t>(mesh.corners.size()));
 }
+
+/// Returns the little-endian value at an address, which need not be aligned.
+template <class Value>
+[[nodiscard]] Value value_at(const char* at) {
+    static_assert(std::endian::native == std::endian::little, "values are copied from little-endian bytes");
+    Value value;
+    std::memcpy(&value, at, sizeof value);
+    return value;
+}
+
+template <class List>
+[[nodiscard]] bool contains(const List& list, std::string_view word) {
+    return std::find(list.begin(), list.end(), word) != list.end();
+}
+
+/// Converts only ASCII letters, independently of the locale, because file formats are ASCII.
+[[nodiscard]] std::string ascii_lower(std::string_view text);
 
 /// Formats a word of a file for a message: printable, short, in quotes.
 [[nodiscard]] std::string in_quotes(std::string_view word);
@@ -171,7 +182,7 @@ private:
 
 /// Reads OBJ text. Each face gets the material (usemtl), the group (g) and the object (o) of the last such statements
 /// before it.
-[[nodiscard]] ParsedMesh read_obj(const MeshSource& source);
+[[nodiscard]] ImportedMesh read_obj(const MeshSource& source);
 
 /// Returns true if the text's first statement is one of the OBJ format.
 [[nodiscard]] bool looks_like_obj(const MeshSource& source);
@@ -180,7 +191,7 @@ private:
 /// coordinates and after a face's indices (colours, normals, texture) must be numbers and are not used. If this fails,
 /// the file is read as free-form text, in which line ends separate numbers like blanks. The text must then contain
 /// exactly as many numbers as its counts and prefixes require.
-[[nodiscard]] ParsedMesh read_off(const MeshSource& source);
+[[nodiscard]] ImportedMesh read_off(const MeshSource& source);
 
 /// Returns true if the text's first word is the keyword OFF with any of its prefixes.
 [[nodiscard]] bool looks_like_off(const MeshSource& source);
@@ -189,7 +200,7 @@ private:
 /// a list vertex_indices or vertex_index. A strip has a list vertex_indices, in which -1 starts a new strip. In an
 /// ASCII file every element has its own line. Triangles of a strip that repeat a vertex only change the strip's
 /// direction and are not faces.
-[[nodiscard]] ParsedMesh read_ply(const MeshSource& source);
+[[nodiscard]] ImportedMesh read_ply(const MeshSource& source);
 
 /// Returns true if the size matches the triangle count at byte 80, or exceeds it by one byte or by CR LF. The text of
 /// the header is ignored.
@@ -200,7 +211,7 @@ private:
 
 /// Reads STL and joins corners of equal coordinates. The facets' normals are not used. The name of a solid in an ASCII
 /// file becomes the group of its facets.
-[[nodiscard]] ParsedMesh read_stl(const MeshSource& source);
+[[nodiscard]] ImportedMesh read_stl(const MeshSource& source);
 
 /// Number of triangle corners that a glTF file of any size may show. Large files may show 16 corners per byte.
 inline constexpr std::size_t kFreeGltfCorners = 4'000'000;
@@ -209,8 +220,8 @@ inline constexpr std::size_t kFreeGltfCorners = 4'000'000;
 /// its nodes, with z up. Corners of one mesh at one node are joined if their coordinates are equal. A face gets the
 /// name of its material, the mesh's name as its group, and the node's name as its object. `folder` contains the files
 /// of buffers. If `folder` is nullopt, such files are refused.
-[[nodiscard]] ParsedMesh read_gltf(const MeshSource& source, const std::optional<std::filesystem::path>& folder,
-                                   std::size_t free_corners = kFreeGltfCorners);
+[[nodiscard]] ImportedMesh read_gltf(const MeshSource& source, const std::optional<std::filesystem::path>& folder,
+                                     std::size_t free_corners = kFreeGltfCorners);
 
 /// Returns true if the bytes begin like a GLB file.
 [[nodiscard]] bool looks_like_glb(const MeshSource& source);
@@ -218,7 +229,7 @@ inline constexpr std::size_t kFreeGltfCorners = 4'000'000;
 /// Reads a file with the Assimp library, which finds the format by content and extension (".fbx"). The result has the
 /// faces as placed by the file's nodes, like that of read_gltf(). No other file is opened. Also throws InputError if
 /// this build has no Assimp.
-[[nodiscard]] ParsedMesh read_foreign(const MeshSource& source, const std::string& extension);
+[[nodiscard]] ImportedMesh read_foreign(const MeshSource& source, const std::string& extension);
 
 /// Returns true if this build has Assimp.
 [[nodiscard]] bool reads_foreign();

@@ -4,10 +4,8 @@
 
 #include <OpenMesh/Core/Mesh/PolyConnectivity.hh>
 #include <algorithm>
-#include <bit>
 #include <cstdlib>
 #include <limits>
-#include <span>
 #include <string>
 #include <utility>
 
@@ -207,8 +205,7 @@ struct MeshTopology::Impl {
     std::vector<char> is_real_boundary;        // per edge: true if it belongs to one face and is not a cut
     TopologyReport report;
 
-    [[nodiscard]] static std::unique_ptr<Impl> of(const FaceList& faces, std::size_t vertex_count);
-    void assemble(const FaceList& faces, const EdgeTable& edges);
+    Impl(const FaceList& faces, std::size_t vertex_count);
     void add_vertices(const FaceList& faces, const EdgeTable& edges);
     void add_edges(const FaceList& faces, const EdgeTable& edges);
     void add_faces(const FaceList& faces);
@@ -221,7 +218,10 @@ struct MeshTopology::Impl {
     std::vector<OpenMesh::HalfedgeHandle> halfedge_of_corner;  // scratch memory of the assembly
 };
 
-void MeshTopology::Impl::assemble(const FaceList& faces, const EdgeTable& edges) {
+MeshTopology::Impl::Impl(const FaceList& faces, std::size_t vertex_count) {
+    const EdgeTable edges(faces, vertex_count);
+    report = ReportBuilder(faces, edges, vertex_count).finish();
+    report.closed = closed_surface(faces, edges).closed;
     add_vertices(faces, edges);
     add_edges(faces, edges);
     add_faces(faces);
@@ -319,30 +319,21 @@ std::uint32_t MeshTopology::Impl::vertex_across(OpenMesh::HalfedgeHandle halfedg
     return vertex_of_fan[static_cast<std::size_t>(mesh.to_vertex_handle(next).idx())];
 }
 
-std::unique_ptr<MeshTopology::Impl> MeshTopology::Impl::of(const FaceList& faces, std::size_t vertex_count) {
-    auto impl = std::make_unique<Impl>();
-    const EdgeTable edges(faces, vertex_count);
-    impl->report = ReportBuilder(faces, edges, vertex_count).finish();
-    impl->report.closed = closed_surface(faces, edges).closed;
-    impl->assemble(faces, edges);
-    return impl;
-}
-
 MeshTopology::MeshTopology(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {
     impl_->report.boundary_loops = boundary_loops().size();
 }
 
-MeshTopology::MeshTopology(const PolygonMesh& mesh) : MeshTopology(Impl::of(faces_of(mesh), mesh.vertices.size())) {
+MeshTopology::MeshTopology(const PolygonMesh& mesh)
+    : MeshTopology(std::make_unique<Impl>(faces_of(mesh), mesh.vertices.size())) {
     impl_->report.unused_vertices = count_unnamed(mesh.corners, mesh.vertices.size());
 }
 
-MeshTopology::MeshTopology(const TriangleMesh& mesh) : MeshTopology(Impl::of(faces_of(mesh), mesh.vertices.size())) {
+MeshTopology::MeshTopology(const TriangleMesh& mesh)
+    : MeshTopology(std::make_unique<Impl>(faces_of(mesh), mesh.vertices.size())) {
     impl_->report.unused_vertices = count_unused_vertices(mesh);
 }
 
 MeshTopology::~MeshTopology() = default;
-MeshTopology::MeshTopology(MeshTopology&&) noexcept = default;
-MeshTopology& MeshTopology::operator=(MeshTopology&&) noexcept = default;
 
 const TopologyReport& MeshTopology::report() const { return impl_->report; }
 

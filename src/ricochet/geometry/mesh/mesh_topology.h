@@ -2,7 +2,6 @@
 /// Connectivity of the faces of a mesh. Only this header and its source wrap OpenMesh.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +9,6 @@
 #include <span>
 #include <vector>
 
-#include "ricochet/core/vec3.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {
@@ -112,8 +110,6 @@ public:
     /// these corners. The line is then an edge of four triangles.
     explicit MeshTopology(const TriangleMesh& mesh);
     ~MeshTopology();
-    MeshTopology(MeshTopology&&) noexcept;
-    MeshTopology& operator=(MeshTopology&&) noexcept;
 
     [[nodiscard]] const TopologyReport& report() const;
 

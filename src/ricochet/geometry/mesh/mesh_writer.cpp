@@ -6,11 +6,11 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <string>
 #include <string_view>
 
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
 
 namespace ricochet {
 namespace {
@@ -119,33 +119,16 @@ void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& path) {
         throw InputError(
             fmt::format("{}: unknown mesh format, the name must end in .obj, .ply, .stl or .off", path.string()));
     }
-    write_mesh(mesh, path, *format);
-}
-
-void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& path, MeshFormat format) {
     if (format == MeshFormat::kGltf || format == MeshFormat::kForeign) {
         throw InputError(
             fmt::format("{}: files of this format are read only, expected a name that ends in .obj, .ply, .stl or .off",
                         path.string()));
     }
     BlockWriter out(path);
-    switch (format) {
-        case MeshFormat::kObj:
-            write_obj(mesh, out);
-            break;
-        case MeshFormat::kPly:
-            write_ply(mesh, out);
-            break;
-        case MeshFormat::kStl:
-            write_stl(mesh, path, out);
-            break;
-        case MeshFormat::kOff:
-            write_off(mesh, out);
-            break;
-        case MeshFormat::kGltf:
-        case MeshFormat::kForeign:
-            break;  // refused above
-    }
+    if (format == MeshFormat::kObj) write_obj(mesh, out);
+    if (format == MeshFormat::kPly) write_ply(mesh, out);
+    if (format == MeshFormat::kStl) write_stl(mesh, path, out);
+    if (format == MeshFormat::kOff) write_off(mesh, out);
     out.commit();
 }
 

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 
-#include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {
@@ -15,8 +14,5 @@ namespace ricochet {
 /// Throws InputError for other extensions, and for STL coordinates beyond single precision. Throws RunError if the file
 /// cannot be written.
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& path);
-
-/// Writes the mesh in a given format, regardless of the name.
-void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& path, MeshFormat format);
 
 }  // namespace ricochet

@@ -5,7 +5,7 @@
 
 namespace ricochet {
 
-ParsedMesh read_foreign(const MeshSource& source, const std::string& extension) {
+ImportedMesh read_foreign(const MeshSource& source, const std::string& extension) {
     source.fail(
         fmt::format("{} files are read by the Assimp library, which this program was built without: export as "
                     "glTF (.glb) or OBJ, or install libassimp-dev and build again",

@@ -22,11 +22,6 @@ constexpr std::array<std::string_view, 32> kIgnored = {
 // Statements that draw a curved surface or run a program.
 constexpr std::array<std::string_view, 9> kRefused = {"curv", "surf", "bsp", "bzp", "cdc", "cdp", "fo", "call", "csh"};
 
-template <typename List>
-bool contains(const List& list, std::string_view word) {
-    return std::find(list.begin(), list.end(), word) != list.end();
-}
-
 // Numbers of lines that begin like vertices and faces. They are usually the final sizes of the lists.
 struct LineCounts {
     std::size_t vertices = 0;
@@ -57,15 +52,13 @@ public:
         mesh_.face_offsets.push_back(0);
     }
 
-    ParsedMesh read() {
+    ImportedMesh read() {
         while (cursor_.next_filled_line()) {
             read_statement();
             cursor_.skip_statement();
         }
         if (forward_.index > static_cast<std::int64_t>(mesh_.vertices.size())) fail_past_end(forward_);
-        ParsedMesh result{std::move(mesh_), "OBJ", std::nullopt};
-        result.notes = notes();
-        return result;
+        return {.polygons = std::move(mesh_), .format = "OBJ", .notes = notes()};
     }
 
 private:
@@ -209,7 +202,7 @@ private:
 
 }  // namespace
 
-ParsedMesh read_obj(const MeshSource& source) {
+ImportedMesh read_obj(const MeshSource& source) {
     require_plain_text(source);
     return ObjReader(source).read();
 }

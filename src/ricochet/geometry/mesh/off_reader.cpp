@@ -202,16 +202,16 @@ void refuse_binary(const MeshSource& source) {
 
 }  // namespace
 
-ParsedMesh read_off(const MeshSource& source) {
+ImportedMesh read_off(const MeshSource& source) {
     refuse_binary(source);
     require_plain_text(source);
     try {
-        return {OffReader(source, OffForm::lines).read(), "OFF", std::nullopt};
+        return {.polygons = OffReader(source, OffForm::lines).read(), .format = "OFF"};
     } catch (const InputError& by_lines) {
         // The error of the line form is reported, because that form is more common.
         const std::string reason = by_lines.what();
         try {
-            return {OffReader(source, OffForm::free).read(), "OFF", std::nullopt};
+            return {.polygons = OffReader(source, OffForm::free).read(), .format = "OFF"};
         } catch (const InputError&) {
             throw InputError(reason);
         }

@@ -58,11 +58,9 @@ void PlacedMeshBuilder::end_face() {
 
 void PlacedMeshBuilder::end() { mesh_.vertices.insert(mesh_.vertices.end(), points_.begin(), points_.end()); }
 
-ParsedMesh PlacedMeshBuilder::finish(std::string format) {
+ImportedMesh PlacedMeshBuilder::finish(std::string format) {
     const WeldReport weld{mesh_.corners.size(), mesh_.vertices.size()};
-    ParsedMesh result{std::move(mesh_), std::move(format), weld};
-    result.y_up = true;
-    return result;
+    return {.polygons = std::move(mesh_), .format = std::move(format), .weld = weld, .y_up = true};
 }
 
 }  // namespace ricochet

@@ -41,7 +41,7 @@ public:
     void end_face();
     /// Ends the mesh that begin() started.
     void end();
-    [[nodiscard]] ParsedMesh finish(std::string format);
+    [[nodiscard]] ImportedMesh finish(std::string format);
 
 private:
     PolygonMesh mesh_;

@@ -6,8 +6,6 @@
 #include <array>
 #include <utility>
 
-#include "ricochet/geometry/mesh/mesh_source.h"
-
 namespace ricochet {
 namespace {
 

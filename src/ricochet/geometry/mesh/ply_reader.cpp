@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/mesh/ply_header.h"
@@ -13,8 +12,6 @@
 
 namespace ricochet {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "byte order is chosen for little-endian machines");
 
 // Reads the values of an ASCII body.
 class AsciiValues {
@@ -115,9 +112,8 @@ private:
     template <typename Value>
     Value load() {
         last_ = at_;
-        std::array<char, sizeof(Value)> raw;
         if (source_.bytes.size() - at_ < sizeof(Value)) fail("file ends inside an element; is it cut off?");
-        std::memcpy(raw.data(), source_.bytes.data() + at_, sizeof(Value));
+        auto raw = value_at<std::array<char, sizeof(Value)>>(source_.bytes.data() + at_);
         at_ += sizeof(Value);
         if constexpr (kSwapBytes) std::reverse(raw.begin(), raw.end());
         return std::bit_cast<Value>(raw);
@@ -292,11 +288,11 @@ private:
 };
 
 template <typename ValueSource>
-ParsedMesh read_body(const MeshSource& source, const PlyHeader& header, std::uint64_t vertices, const char* format) {
-    return {BodyReader<ValueSource>(source, header, vertices).read(header), format, std::nullopt};
+ImportedMesh read_body(const MeshSource& source, const PlyHeader& header, std::uint64_t vertices, const char* format) {
+    return {.polygons = BodyReader<ValueSource>(source, header, vertices).read(header), .format = format};
 }
 
-ParsedMesh read_body_as(const MeshSource& source, const PlyHeader& header, std::uint64_t vertices) {
+ImportedMesh read_body_as(const MeshSource& source, const PlyHeader& header, std::uint64_t vertices) {
     switch (header.encoding) {
         case PlyEncoding::kLittleEndian:
             return read_body<BinaryValues<false>>(source, header, vertices, "PLY, binary little endian");
@@ -310,12 +306,12 @@ ParsedMesh read_body_as(const MeshSource& source, const PlyHeader& header, std::
 
 }  // namespace
 
-ParsedMesh read_ply(const MeshSource& source) {
+ImportedMesh read_ply(const MeshSource& source) {
     const PlyHeader header = read_ply_header(source);
     const PlyElement* const vertex = header.find("vertex");
     if (vertex == nullptr) source.fail("the header has no element 'vertex'");
     if (vertex->count > kLargestIndexCount) source.fail(fmt::format("more than {} vertices", kLargestIndexCount));
-    ParsedMesh result = read_body_as(source, header, vertex->count);
+    ImportedMesh result = read_body_as(source, header, vertex->count);
     result.notes = header.notes;
     return result;
 }

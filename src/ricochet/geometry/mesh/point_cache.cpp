@@ -2,29 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <string>
 
 #include "ricochet/core/error.h"
+#include "ricochet/geometry/mesh/mesh_source.h"
 
 namespace ricochet {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "byte order is chosen for little-endian machines");
-
 constexpr std::string_view kSignature{"POINTCACHE2\0", 12};
 constexpr std::size_t kHeader = 32;
 constexpr std::size_t kPoint = 12;
-
-template <class Value>
-Value value_at(std::string_view bytes, std::size_t offset) {
-    Value value{};
-    std::memcpy(&value, bytes.data() + offset, sizeof(value));
-    return value;
-}
 
 }  // namespace
 
@@ -34,12 +24,12 @@ PointCache read_point_cache(const std::filesystem::path& name, std::string_view 
     };
     require(bytes.size() >= kHeader && bytes.substr(0, kSignature.size()) == kSignature,
             "not a point cache, expected a file that begins with POINTCACHE2 and a header of 32 bytes");
-    const auto version = value_at<std::int32_t>(bytes, 12);
+    const auto version = value_at<std::int32_t>(bytes.data() + 12);
     require(version == 1, fmt::format("the point cache has the version {}, expected 1", version));
-    const auto points = value_at<std::int32_t>(bytes, 16);
-    const auto first = value_at<float>(bytes, 20);
-    const auto step = value_at<float>(bytes, 24);
-    const auto samples = value_at<std::int32_t>(bytes, 28);
+    const auto points = value_at<std::int32_t>(bytes.data() + 16);
+    const auto first = value_at<float>(bytes.data() + 20);
+    const auto step = value_at<float>(bytes.data() + 24);
+    const auto samples = value_at<std::int32_t>(bytes.data() + 28);
     require(points > 0, fmt::format("found {} points, expected at least 1", points));
     require(samples > 1, fmt::format("found {}, expected at least 2",
                                      samples == 1 ? "1 sample" : fmt::format("{} samples", samples)));
@@ -60,7 +50,8 @@ PointCache read_point_cache(const std::filesystem::path& name, std::string_view 
         std::vector<Vec3>& sample = cache.positions.emplace_back();
         sample.reserve(static_cast<std::size_t>(points));
         for (std::int32_t i = 0; i < points; ++i, at += kPoint) {
-            const Vec3 p{value_at<float>(bytes, at), value_at<float>(bytes, at + 4), value_at<float>(bytes, at + 8)};
+            const Vec3 p{value_at<float>(bytes.data() + at), value_at<float>(bytes.data() + at + 4),
+                         value_at<float>(bytes.data() + at + 8)};
             require(is_finite(p), fmt::format("byte {}: found a coordinate that is not finite", at));
             sample.push_back(p);
         }

@@ -43,18 +43,6 @@ double angle_between(const Vec3& u, const Vec3& v) {
 
 Vec3 zero_if_cancelled(const Vec3& mean) { return max_abs(mean) <= kPseudonormalRounding ? Vec3{} : mean; }
 
-int sign_beyond(double value, double error) {
-    return static_cast<int>(value > error) - static_cast<int>(value < -error);
-}
-
-bool is_vertex(TriangleFeature feature) { return feature >= TriangleFeature::kVertexA; }
-
-/// Returns the index of edge AB, BC or CA, or of vertex A, B or C, as 0, 1 or 2.
-std::size_t number_of(TriangleFeature feature) {
-    return static_cast<std::size_t>(feature) -
-           static_cast<std::size_t>(is_vertex(feature) ? TriangleFeature::kVertexA : TriangleFeature::kEdgeAB);
-}
-
 /// Signed distance from a triangle's plane with its error, which matters for slender triangles.
 struct Height {
     double value;
@@ -215,13 +203,13 @@ Vec3 Pseudonormals::of_edge(std::uint32_t triangle, std::size_t side) const {
 Vec3 Pseudonormals::of(std::uint32_t triangle, TriangleFeature feature) const {
     if (feature == TriangleFeature::kFace) return static_cast<double>(excess_of(triangle)) * unit_normal_of(triangle);
     const std::size_t number = number_of(feature);
-    return is_vertex(feature) ? at_vertex_[welded(triangle, number)] : of_edge(triangle, number);
+    return rank(feature) == 2 ? at_vertex_[welded(triangle, number)] : of_edge(triangle, number);
 }
 
 int Pseudonormals::side(std::uint32_t triangle, const ClosestPointOnTriangle& nearest, const Vec3& p) const {
     if (nearest.feature == TriangleFeature::kFace) return excess_of(triangle) * side_of_face(triangle, p);
     const std::size_t number = number_of(nearest.feature);
-    if (!is_vertex(nearest.feature)) return side_of_edge(triangle, number, p);
+    if (rank(nearest.feature) == 1) return side_of_edge(triangle, number, p);
     return sign_beyond(dot(nearest.offset, at_vertex_[welded(triangle, number)]),
                        kPseudonormalRounding * length(nearest.offset));
 }
@@ -261,7 +249,7 @@ int Pseudonormals::side_of_two_faces(std::uint32_t first, std::uint32_t second, 
 bool Pseudonormals::is_on_boundary(std::uint32_t triangle, TriangleFeature feature) const {
     if (feature == TriangleFeature::kFace) return false;
     const std::size_t number = number_of(feature);
-    if (is_vertex(feature)) return vertex_is_open_[welded(triangle, number)] != 0;
+    if (rank(feature) == 2) return vertex_is_open_[welded(triangle, number)] != 0;
     const Neighbour beyond = sides_[triangle][number];
     return beyond >= kIrregularEdge && irregular_edges_[beyond - kIrregularEdge].is_open;
 }

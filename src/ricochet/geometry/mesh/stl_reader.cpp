@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 
 #include "ricochet/geometry/mesh/face_group_table.h"
 #include "ricochet/geometry/mesh/vertex_welder.h"
@@ -20,26 +18,12 @@ constexpr std::size_t kFirstFacet = 84;
 constexpr std::size_t kFacetBytes = 50;
 constexpr std::size_t kNormalBytes = 12;
 
-static_assert(std::endian::native == std::endian::little, "binary STL is copied from little-endian bytes");
-
-template <typename Value>
-Value value_at(const MeshSource& source, std::size_t byte) {
-    Value value;
-    std::memcpy(&value, source.bytes.data() + byte, sizeof value);
-    return value;
+std::uint64_t facets_promised(const MeshSource& source) {
+    return value_at<std::uint32_t>(source.bytes.data() + kCountByte);
 }
-
-std::uint64_t facets_promised(const MeshSource& source) { return value_at<std::uint32_t>(source, kCountByte); }
 
 // Compares a word with a keyword, which may be in lower or upper case.
-bool is_keyword(std::string_view word, std::string_view keyword) {
-    if (word.size() != keyword.size()) return false;
-    for (std::size_t i = 0; i < word.size(); ++i) {
-        const char c = word[i];
-        if ((c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c) != keyword[i]) return false;
-    }
-    return true;
-}
+bool is_keyword(std::string_view word, std::string_view keyword) { return ascii_lower(word) == keyword; }
 
 /// Returns the bytes after the last facet of a binary file.
 std::string_view bytes_behind(const MeshSource& source) {
@@ -65,9 +49,9 @@ public:
         mesh_.face_offsets.reserve(facets + 1);
         welder_.reserve(facets / 2 + 2);  // enough for a closed surface, by Euler's formula; grows for others
     }
-    ParsedMesh finish(std::string format) {
+    ImportedMesh finish(std::string format) {
         const WeldReport weld{mesh_.corners.size(), mesh_.vertices.size()};
-        return {std::move(mesh_), std::move(format), weld};
+        return {.polygons = std::move(mesh_), .format = std::move(format), .weld = weld};
     }
 
 private:
@@ -80,7 +64,7 @@ Vec3 binary_point(const MeshSource& source, std::size_t byte) {
     Vec3 point;
     for (int axis = 0; axis < 3; ++axis) {
         const std::size_t start = byte + 4 * static_cast<std::size_t>(axis);
-        const auto value = static_cast<double>(value_at<float>(source, start));
+        const auto value = static_cast<double>(value_at<float>(source.bytes.data() + start));
         const std::optional<double> accepted = accepted_coordinate(value);
         if (!accepted)
             source.fail_at_byte(start, fmt::format("vertex coordinate is {}, expected a finite number", value));
@@ -89,7 +73,7 @@ Vec3 binary_point(const MeshSource& source, std::size_t byte) {
     return point;
 }
 
-ParsedMesh read_binary(const MeshSource& source) {
+ImportedMesh read_binary(const MeshSource& source) {
     const std::uint64_t facets = facets_promised(source);
     if (3 * facets > kLargestIndexCount) source.fail(fmt::format("more than {} facet corners", kLargestIndexCount));
     FacetCollector collector;
@@ -101,7 +85,7 @@ ParsedMesh read_binary(const MeshSource& source) {
         }
         collector.end_facet();
     }
-    ParsedMesh result = collector.finish("STL, binary");
+    ImportedMesh result = collector.finish("STL, binary");
     if (const std::size_t more = bytes_behind(source).size(); more > 0) {
         result.notes.push_back(
             fmt::format("{} more than its {} triangles take, left out", more == 1 ? "1 byte" : "a line end", facets));
@@ -113,7 +97,7 @@ class AsciiStlReader {
 public:
     explicit AsciiStlReader(const MeshSource& source) : cursor_(source, kSyntax) {}
 
-    ParsedMesh read() {
+    ImportedMesh read() {
         do {
             read_solid();
         } while (cursor_.next_filled_line());
@@ -178,7 +162,7 @@ bool starts_with_solid(const MeshSource& source) {
     return cursor.next_filled_line() && is_keyword(cursor.word(), "solid");
 }
 
-ParsedMesh read_stl(const MeshSource& source) {
+ImportedMesh read_stl(const MeshSource& source) {
     if (has_binary_stl_size(source)) return read_binary(source);
     // A truncated binary file may start with "solid" too, but text has no NUL bytes.
     if (starts_with_solid(source) && source.bytes.find('\0') == std::string_view::npos) {

@@ -3,17 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
-#include <limits>
 #include <numeric>
 #include <span>
-#include <tuple>
 #include <utility>
-#include <vector>
 
 #include "ricochet/core/error.h"
 #include "ricochet/geometry/mesh/ear_clipper.h"
-#include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {

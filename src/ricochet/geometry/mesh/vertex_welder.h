@@ -4,11 +4,26 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "ricochet/core/vec3.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {
+
+/// Replaces each corner v of the triangles by number_of(v), which is called once for every vertex of a triangle.
+template <class NumberOf>
+void rename_corners(TriangleMesh& mesh, const NumberOf& number_of) {
+    constexpr std::uint32_t kUnknown = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> renamed(mesh.vertices.size(), kUnknown);
+    for (Triangle& t : mesh.triangles) {
+        for (std::uint32_t& v : t) {
+            if (renamed[v] == kUnknown) renamed[v] = number_of(v);
+            v = renamed[v];
+        }
+    }
+}
 
 /// Numbers distinct positions in the order of their first appearance. The comparison is exact. 0 and -0 are equal, and
 /// positions with any other difference are distinct. Positions must be finite.

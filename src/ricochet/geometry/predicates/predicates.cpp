@@ -19,10 +19,8 @@ int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
     // arithmetic.
     constexpr double kMinorFilter = 4.5 * kU;
     const detail::FilteredCross filtered = detail::filtered_cross(b - a, c - a);
-    const double value = filtered.value[axis];
-    const double bound = kMinorFilter * filtered.magnitude[axis];
-    if (value > bound) return 1;
-    if (value < -bound) return -1;
+    const int sign = sign_beyond(filtered.value[axis], kMinorFilter * filtered.magnitude[axis]);
+    if (sign != 0) return sign;
     return detail::exact_cross_component(ExactDifference(b, a), ExactDifference(c, a), axis).sign();
 }
 

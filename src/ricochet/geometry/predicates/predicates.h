@@ -22,8 +22,6 @@ struct Point2 {
     friend constexpr bool operator==(const Point2&, const Point2&) = default;
 };
 
-/// Largest coordinate magnitude for which the predicates are exact. Local: a bound that the proof of exactness needs.
-inline constexpr double kLargestExactCoordinate = 0x1p300;
 /// Smallest coordinate magnitude. Smaller coordinates are replaced by zero, which keeps every product inside the range
 /// of doubles. Local: a bound that the proof of exactness needs.
 inline constexpr double kSmallestExactCoordinate = 0x1p-287;
@@ -32,6 +30,11 @@ inline constexpr double kSmallestExactCoordinate = 0x1p-287;
 [[nodiscard]] inline Vec3 flush_tiny(const Vec3& p) {
     const auto flushed = [](double x) { return std::fabs(x) < kSmallestExactCoordinate ? 0.0 : x; };
     return {flushed(p.x), flushed(p.y), flushed(p.z)};
+}
+
+/// Returns the sign of a value with the given error bound, or 0 if the bound leaves it undecided.
+[[nodiscard]] constexpr int sign_beyond(double value, double error) {
+    return static_cast<int>(value > error) - static_cast<int>(value < -error);
 }
 
 /// Returns the sign of (b - a) x (c - a) . (d - a). It is +1 if d is on the side that the triangle's normal
@@ -89,8 +92,7 @@ inline constexpr double kDeterminantFilter = 0x1.1p-50;
     const double determinant = cross.value.x * w.x + cross.value.y * w.y + cross.value.z * w.z;
     const double magnitude =
         cross.magnitude.x * std::fabs(w.x) + cross.magnitude.y * std::fabs(w.y) + cross.magnitude.z * std::fabs(w.z);
-    const double bound = kDeterminantFilter * magnitude;
-    return static_cast<int>(determinant > bound) - static_cast<int>(determinant < -bound);
+    return sign_beyond(determinant, kDeterminantFilter * magnitude);
 }
 
 /// Computes orient2d for points that the filter does not decide.
@@ -126,11 +128,8 @@ inline bool segment_intersects_triangle(const Vec3& p, const Vec3& q, const Vec3
     constexpr double kFilter = 4.5 * 0x1p-53;
     const double left = (b.u - a.u) * (c.v - a.v);
     const double right = (b.v - a.v) * (c.u - a.u);
-    const double value = left - right;
-    const double bound = kFilter * (std::fabs(left) + std::fabs(right));
-    if (value > bound) return 1;
-    if (value < -bound) return -1;
-    return detail::orient2d_beyond_filter(a, b, c);
+    const int filtered = sign_beyond(left - right, kFilter * (std::fabs(left) + std::fabs(right)));
+    return filtered != 0 ? filtered : detail::orient2d_beyond_filter(a, b, c);
 }
 
 }  // namespace ricochet

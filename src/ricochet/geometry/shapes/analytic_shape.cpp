@@ -167,14 +167,6 @@ ShapeContacts AnalyticShape::contacts(const Path& path, double radius, const Sup
     return found;
 }
 
-std::optional<ShapeContact> AnalyticShape::first_contact(const Path& path, double radius) const {
-    const ShapeContacts found = contacts(path, radius);
-    const auto all = found.all();
-    const auto first = std::min_element(all.begin(), all.end(),
-                                        [](const ShapeContact& a, const ShapeContact& b) { return a.time < b.time; });
-    return first == all.end() ? std::nullopt : std::optional(*first);
-}
-
 bool AnalyticShape::segment_is_clear(const Vec3& p, const Vec3& q) const {
     return shape_.is_clear(segment<double>(p, q)) || shape_.is_clear(segment<DoubleDouble>(p, q));
 }

@@ -10,8 +10,6 @@
 
 #include <array>
 #include <cstddef>
-#include <optional>
-#include <span>
 
 #include "ricochet/core/box3.h"
 #include "ricochet/core/transform.h"
@@ -91,8 +89,6 @@ public:
     /// error of their times is the error of the distance divided by the normal speed, plus an ulp. Only grazing
     /// contacts that are less deep than these errors can be missed.
     [[nodiscard]] ShapeContacts contacts(const Path& path, double radius, const SupportingParts& supports = {}) const;
-    /// Returns the first contact of contacts().
-    [[nodiscard]] std::optional<ShapeContact> first_contact(const Path& path, double radius) const;
 
     /// Returns true if the closed segment [p, q] certainly does not intersect the surface. Returns false if this is
     /// undecided, to about 2^-90.

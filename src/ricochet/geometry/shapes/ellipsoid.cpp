@@ -85,16 +85,7 @@ double Ellipsoid::value_error(const Vec3& y, double coordinate_error, double uni
     return (1.0 + 0x1p-40) * (of_coordinates + unit * terms);
 }
 
-Polynomial Ellipsoid::value_along(const LocalPath& path, int sign) const {
-    return value_along(path, sign, weights_, constant_);
-}
-
-Polynomial Ellipsoid::value_along(const LocalPath& path, int sign, const DoubleDouble& radius) const {
-    return value_along(path, sign, weights_, radius * radius);
-}
-
-Polynomial Ellipsoid::value_along(const LocalPath& path, int sign, const std::array<DoubleDouble, 3>& weights,
-                                  const DoubleDouble& constant) const {
+Polynomial Ellipsoid::value_along(const LocalPath& path, int sign, const std::optional<DoubleDouble>& radius) const {
     Polynomial p;
     p.degree = 2 * path.degree;
     p.duration = path.duration;
@@ -102,14 +93,14 @@ Polynomial Ellipsoid::value_along(const LocalPath& path, int sign, const std::ar
     for (size_t axis = 0; axis < axes_; ++axis) {
         const auto& m = path.component[axis];
         for (size_t i = 0; i <= degree; ++i) {
-            const DoubleDouble weighted = is_round_ ? m[i] : weights[axis] * m[i];
+            const DoubleDouble weighted = is_round_ ? m[i] : weights_[axis] * m[i];
             p.coefficients[2 * i] = p.coefficients[2 * i] + weighted * m[i];
             for (size_t j = i + 1; j <= degree; ++j) {
                 p.coefficients[i + j] = p.coefficients[i + j] + 2.0 * (weighted * m[j]);
             }
         }
     }
-    p.coefficients[0] = p.coefficients[0] - constant;
+    p.coefficients[0] = p.coefficients[0] - (radius ? *radius * *radius : constant_);
     if (sign < 0) {
         for (DoubleDouble& c : p.coefficients) c = -c;
     }

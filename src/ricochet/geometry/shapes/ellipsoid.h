@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "ricochet/core/double_double.h"
 #include "ricochet/core/vec3.h"
@@ -57,10 +58,10 @@ public:
     /// arithmetic has an error of `unit` relative to the terms.
     [[nodiscard]] double value_error(const Vec3& y, double coordinate_error, double unit) const;
 
-    /// Returns value() along a path times `sign`, as a polynomial of twice the path's degree. The second function
-    /// requires a round shape and replaces its radius by `radius`.
-    [[nodiscard]] Polynomial value_along(const LocalPath& path, int sign) const;
-    [[nodiscard]] Polynomial value_along(const LocalPath& path, int sign, const DoubleDouble& radius) const;
+    /// Returns value() along a path times `sign`, as a polynomial of twice the path's degree. `radius` replaces the
+    /// radius of a round shape.
+    [[nodiscard]] Polynomial value_along(const LocalPath& path, int sign,
+                                         const std::optional<DoubleDouble>& radius = {}) const;
 
     /// Returns the closest surface point; on the medial axis it is one of several. The distance has a relative error of
     /// about 2^-50, also next to the surface. At distances above a quarter of the smallest radius of curvature, an
@@ -89,8 +90,6 @@ private:
     [[nodiscard]] ShapePoint closest_point_of_round(const PreciseVec3& y) const;
     [[nodiscard]] double sigma_of(const std::array<double, 3>& y) const;
     [[nodiscard]] double polished(double tau, const std::array<double, 3>& y, double value) const;
-    [[nodiscard]] Polynomial value_along(const LocalPath& path, int sign, const std::array<DoubleDouble, 3>& weights,
-                                         const DoubleDouble& constant) const;
 
     std::size_t axes_;
     std::array<double, 3> half_axes_;

@@ -1,7 +1,8 @@
 #include "ricochet/geometry/shapes/local_shape.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
 namespace {
@@ -19,12 +20,9 @@ constexpr double kSegmentError = 0x1p-50;
 /// the square of that error. Local: an error bound of this arithmetic.
 constexpr double kMinimumError = 0x1p-98;
 
-double rounded_value(double x) { return x; }
-double rounded_value(const DoubleDouble& x) { return x.hi; }
-
 template <class Scalar>
 Vec3 rounded_vector(const VectorOf<Scalar>& v) {
-    return {rounded_value(v.x), rounded_value(v.y), rounded_value(v.z)};
+    return {high(v.x), high(v.y), high(v.z)};
 }
 
 template <class Scalar>
@@ -43,10 +41,6 @@ Scalar crossing(const Scalar& before, const Scalar& after) {
     return before / (before - after);
 }
 
-int sign_beyond(double value, double bound) {
-    return static_cast<int>(value > bound) - static_cast<int>(value < -bound);
-}
-
 }  // namespace
 
 LocalShape::LocalShape(const std::array<double, 3>& half_axes, bool is_capped)
@@ -58,12 +52,12 @@ LocalShape LocalShape::cylinder(const std::array<double, 3>& half_axes) { return
 template <class Scalar>
 int LocalShape::side_of_start(const LocalSegment<Scalar>& segment) const {
     const Vec3 y = rounded_vector(segment.from);
-    const int lateral = sign_beyond(rounded_value(ellipsoid_.value(segment.from)),
+    const int lateral = sign_beyond(high(ellipsoid_.value(segment.from)),
                                     ellipsoid_.value_error(y, segment.coordinate_error, segment.unit));
     if (!is_capped_ || lateral > 0) return lateral;
     const double magnitude = std::fabs(y.z) + half_height_;
     const Scalar height = (y.z < 0.0 ? -segment.from.z : segment.from.z) + Scalar(-half_height_);
-    const int beyond_cap = sign_beyond(rounded_value(height), segment.coordinate_error + segment.unit * magnitude);
+    const int beyond_cap = sign_beyond(high(height), segment.coordinate_error + segment.unit * magnitude);
     if (beyond_cap > 0) return 1;
     return lateral < 0 && beyond_cap < 0 ? -1 : 0;
 }
@@ -76,14 +70,13 @@ std::optional<LocalShape::Interval<Scalar>> LocalShape::between_caps(const Local
     for (const double sign : {1.0, -1.0}) {
         const Scalar before = sign * segment.from.z + Scalar(-half_height_);
         const Scalar after = sign * segment.to.z + Scalar(-half_height_);
-        const double largest =
-            std::max(std::fabs(rounded_value(segment.from.z)), std::fabs(rounded_value(segment.to.z)));
+        const double largest = std::max(std::fabs(high(segment.from.z)), std::fabs(high(segment.to.z)));
         const double error = segment.coordinate_error + segment.unit * (largest + half_height_);
-        if (rounded_value(before) > error && rounded_value(after) > error) return std::nullopt;
-        const double slack = 4.0 * segment.unit + 4.0 * error / std::fabs(rounded_value(before - after));
-        if (rounded_value(before) > error) {
+        if (high(before) > error && high(after) > error) return std::nullopt;
+        const double slack = 4.0 * segment.unit + 4.0 * error / std::fabs(high(before - after));
+        if (high(before) > error) {
             part.from = std::max(part.from, crossing(before, after) + Scalar(-slack));
-        } else if (rounded_value(after) > error) {
+        } else if (high(after) > error) {
             part.to = std::min(part.to, Scalar(1.0) - crossing(after, before) + Scalar(slack));
         }
     }
@@ -115,7 +108,7 @@ bool LocalShape::is_clear(const LocalSegment<Scalar>& segment) const {
     const Vec3 magnitude = abs(y) + abs(d);
     const double error =
         ellipsoid_.value_error(magnitude, 4.0 * segment.coordinate_error, 4.0 * segment.unit + kMinimumError);
-    return rounded_value(ellipsoid_.value(nearest)) > error;
+    return high(ellipsoid_.value(nearest)) > error;
 }
 
 template int LocalShape::side_of_start(const LocalSegment<double>&) const;

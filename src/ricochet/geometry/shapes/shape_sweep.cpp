@@ -311,59 +311,35 @@ ShapeContact contact_with(const ShapePoint& near, double time, int side) {
     return {time, side < 0 ? -near.normal : near.normal, near.point, near.part, near.on_rim};
 }
 
-ShapeContact contact_at(const LocalShape& shape, const LocalPath& path, double time, int side) {
-    return contact_with(shape.closest_point(path.position(time)), time, side);
-}
-
-ShapeContact contact_with_part(const LocalShape& shape, const LocalPath& path, ShapePart part, double time) {
-    return contact_with(shape.closest_point_beyond(part, path.position(time)), time, -1);
-}
-
 double first_entry(const LocalShape& shape, const LocalPath& path) {
     if (shape.is_capped()) return first_entry_of_cylinder(shape, path);
     return first_time(down_crossings(shape.ellipsoid().value_along(path, +1), 0.0, path.duration));
 }
 
-/// Returns the time of contact of a sphere from outside. A sphere that hits a sphere from outside is equivalent to a
-/// point that hits a sphere larger by the radius. A sphere inside a sphere or a circular cylinder is equivalent to a
-/// point inside a surface smaller by the radius.
-double contact_from_outside(const LocalShape& shape, const LocalPath& path, double radius,
-                            const ConservativeAdvancement& advancement, double from) {
+/// Returns the first contact of a ball with the shape from outside, or with one part of it from inside. A ball that
+/// hits a sphere from outside is equivalent to a point that hits a sphere larger by the radius. A ball inside a sphere
+/// or a circular cylinder is equivalent to a point inside a surface smaller by the radius. Other contacts have no
+/// closed form.
+double contact_of_ball(const LocalShape& shape, const LocalPath& path, double radius,
+                       std::optional<ShapePart> from_inside) {
+    const ConservativeAdvancement advancement(shape, path, radius, from_inside);
+    double from = 0.0;
+    if (advancement.starts_in_overlap()) {
+        const ConservativeAdvancement::Overlap overlap = advancement.follow_overlap();
+        if (overlap.is_stopped) return overlap.time;
+        if (!(overlap.time < path.duration)) return kNever;
+        from = overlap.time;
+    }
     const Ellipsoid& ellipsoid = shape.ellipsoid();
-    if (!ellipsoid.is_round() || shape.is_capped()) return advancement.first_contact(from).value_or(kNever);
-    const Polynomial clearance = ellipsoid.value_along(path, +1, two_sum(ellipsoid.smallest(), radius));
-    return first_time(down_crossings(clearance, from, path.duration));
-}
-
-double contact_from_inside(const LocalShape& shape, const LocalPath& path, ShapePart part, double radius,
-                           const ConservativeAdvancement& advancement, double from) {
-    const bool has_closed_form =
-        part != ShapePart::side || (shape.ellipsoid().is_round() && radius < shape.ellipsoid().smallest());
-    return has_closed_form ? first_exit(shape, path, part, radius, from)
-                           : advancement.first_contact(from).value_or(kNever);
-}
-
-/// Returns the first contact of a sphere. contact_after(from) returns the first contact after the time `from`, at which
-/// the sphere is separated.
-template <class ContactAfter>
-double contact_of_ball(const ConservativeAdvancement& advancement, double duration, const ContactAfter& contact_after) {
-    if (!advancement.starts_in_overlap()) return contact_after(0.0);
-    const ConservativeAdvancement::Overlap overlap = advancement.follow_overlap();
-    if (overlap.is_stopped) return overlap.time;
-    return overlap.time < duration ? contact_after(overlap.time) : kNever;
-}
-
-double contact_of_ball_outside(const LocalShape& shape, const LocalPath& path, double radius) {
-    const ConservativeAdvancement advancement(shape, path, radius, std::nullopt);
-    return contact_of_ball(advancement, path.duration,
-                           [&](double from) { return contact_from_outside(shape, path, radius, advancement, from); });
-}
-
-double contact_of_ball_inside(const LocalShape& shape, const LocalPath& path, ShapePart part, double radius) {
-    const ConservativeAdvancement advancement(shape, path, radius, part);
-    return contact_of_ball(advancement, path.duration, [&](double from) {
-        return contact_from_inside(shape, path, part, radius, advancement, from);
-    });
+    if (!from_inside && ellipsoid.is_round() && !shape.is_capped()) {
+        const Polynomial clearance = ellipsoid.value_along(path, +1, two_sum(ellipsoid.smallest(), radius));
+        return first_time(down_crossings(clearance, from, path.duration));
+    }
+    const bool is_flat = from_inside && *from_inside != ShapePart::side;
+    if (is_flat || (from_inside && ellipsoid.is_round() && radius < ellipsoid.smallest())) {
+        return first_exit(shape, path, *from_inside, radius, from);
+    }
+    return advancement.first_contact(from).value_or(kNever);
 }
 
 int side_of_start(const LocalShape& shape, const LocalPath& path, double radius) {
@@ -388,17 +364,20 @@ ShapeContacts contacts_of(const LocalShape& shape, const LocalPath& path, double
     if (side < 0) {
         for (const ShapePart part : shape.parts()) {
             if (supports[part]) continue;
-            const double time = radius > 0.0 ? contact_of_ball_inside(shape, path, part, radius)
-                                             : first_exit(shape, path, part, 0.0, 0.0);
-            if (time != kNever) found.contacts[found.count++] = contact_with_part(shape, path, part, time);
+            const double time =
+                radius > 0.0 ? contact_of_ball(shape, path, radius, part) : first_exit(shape, path, part, 0.0, 0.0);
+            if (time == kNever) continue;
+            found.contacts[found.count++] =
+                contact_with(shape.closest_point_beyond(part, path.position(time)), time, -1);
         }
     } else if (!supports.any()) {
         // A point that starts on the surface hits it at time 0, as if it came from the side opposite to its motion.
         // Planes use the same rule.
         double time = 0.0;
-        if (side > 0) time = radius > 0.0 ? contact_of_ball_outside(shape, path, radius) : first_entry(shape, path);
+        if (side > 0) time = radius > 0.0 ? contact_of_ball(shape, path, radius, {}) : first_entry(shape, path);
+        if (time == kNever) return found;
         const int seen_from = side > 0 ? 1 : -heading(shape, path);
-        if (time != kNever) found.contacts[found.count++] = contact_at(shape, path, time, seen_from);
+        found.contacts[found.count++] = contact_with(shape.closest_point(path.position(time)), time, seen_from);
     }
     return found;
 }

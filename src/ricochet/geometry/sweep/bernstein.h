@@ -22,9 +22,6 @@ constexpr double kError<DoubleDouble> = 0x1p-92;
 /// to zero. Local: a guard against the end of the range of doubles.
 inline constexpr double kSmallestCoefficient = 0x1p-900;
 
-inline double high(double x) { return x; }
-inline double high(const DoubleDouble& x) { return x.hi; }
-
 /// A polynomial in Bernstein form. The coefficients `c` are stored multiplied by the binomials, so the product of two
 /// polynomials is a convolution. `size` has the same form and accumulates the magnitudes of all added terms.
 template <class Real, std::size_t Degree>
@@ -109,8 +106,5 @@ template <class Real, std::size_t N>
 Vector<Real, N> negative(const Vector<Real, N>& a) {
     return difference(Vector<Real, N>{}, a);
 }
-
-inline DoubleDouble exact_difference(double a, double b, DoubleDouble /*kind*/) { return two_diff(a, b); }
-inline double exact_difference(double a, double b, double /*kind*/) { return a - b; }
 
 }  // namespace ricochet::bernstein

@@ -5,6 +5,8 @@
 /// computed first. Far from the origin, only the returned point has a larger rounding error.
 #pragma once
 
+#include <cstddef>
+
 #include "ricochet/core/vec3.h"
 
 namespace ricochet {
@@ -16,6 +18,12 @@ enum class TriangleFeature : unsigned char { kFace, kEdgeAB, kEdgeBC, kEdgeCA, k
 [[nodiscard]] constexpr int rank(TriangleFeature feature) {
     return static_cast<int>(feature >= TriangleFeature::kEdgeAB) +
            static_cast<int>(feature >= TriangleFeature::kVertexA);
+}
+
+/// Returns the index of an edge (AB, BC, CA) or of a vertex (A, B, C): 0, 1 or 2.
+[[nodiscard]] constexpr std::size_t number_of(TriangleFeature feature) {
+    const auto first = rank(feature) == 2 ? TriangleFeature::kVertexA : TriangleFeature::kEdgeAB;
+    return static_cast<std::size_t>(feature) - static_cast<std::size_t>(first);
 }
 
 /// The point of a segment nearest to a point p.

@@ -41,8 +41,8 @@ Vector<Real, 1> offset_on(const MovingPoint& from, const MovingPoint& to, double
     Vector<Real, 1> offset;
     const std::array<double, 2> ends{s, t};
     for (int axis = 0; axis < 3; ++axis) {
-        const Real begin = exact_difference(to.from[axis], from.from[axis], Real());
-        const Real end = exact_difference(to.to[axis], from.to[axis], Real());
+        const Real begin = difference_as<Real>(to.from[axis], from.from[axis]);
+        const Real end = difference_as<Real>(to.to[axis], from.to[axis]);
         Polynomial<Real, 1>& p = offset[static_cast<std::size_t>(axis)];
         for (std::size_t k = 0; k < 2; ++k) {
             const double rest = 1.0 - ends[k];  // exact: a multiple of 2^-52
@@ -350,10 +350,11 @@ private:
     [[nodiscard]] double distance_past(double s, double t, const std::optional<TriangleFeature>& nearest) const {
         const Vec3 moved = position(t) - position(s);
         const auto& corners = triangle_.corners;
-        constexpr auto kFirstEdge = static_cast<std::size_t>(TriangleFeature::kEdgeAB);
-        const std::size_t edge = nearest ? static_cast<std::size_t>(*nearest) - kFirstEdge : 3;
         Vec3 along;
-        if (edge < 3) along = normalized(corners[(edge + 1) % 3].at(s) - corners[edge].at(s));
+        if (nearest && rank(*nearest) == 1) {
+            const std::size_t edge = number_of(*nearest);
+            along = normalized(corners[(edge + 1) % 3].at(s) - corners[edge].at(s));
+        }
         double past = 0.0;
         for (const MovingPoint& corner : corners) {
             const Vec3 relative = moved - (corner.at(t) - corner.at(s));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/geometry/sweep/polynomial.h"
 
 namespace ricochet {
@@ -92,20 +93,14 @@ std::optional<double> first_meeting(const TimedPath& a, const TimedPath& b, doub
 }
 
 Box3 box_of(const Path& path, double s) {
-    Box3 box;
-    if (path.degree == 1) {
-        box.include(path.c[0]);
-        box.include(path.position(s));
-        return box;
-    }
+    if (path.degree == 1) return box_around(path.c[0], path.position(s));
     Path part = path;
     if (s < path.duration) {
         part.end = path.position(s);
         part.duration = s;
     }
-    const ControlPoints points = part.control_points();
-    for (const Vec3& point : points) box.include(point);
-    box.include(part.end);
+    Box3 box;
+    for (const Vec3& point : part.control_points()) box.include(point);
     return box;
 }
 

@@ -213,46 +213,34 @@ Times sign_changes_of_quadratic(const Polynomial& p) {
     return times;
 }
 
-/// Ends of the pieces of [from, to] on which p is monotone.
-struct Pieces {
-    std::array<double, Polynomial::kLargestDegree + 2> end{};
-    int count = 0;  ///< number of ends: pieces + 1
-
-    void append(double s) { end[static_cast<size_t>(count++)] = s; }
-    [[nodiscard]] double operator[](int i) const { return end[static_cast<size_t>(i)]; }
-};
-
-Pieces pieces_between(double from, const Times& cuts, double to) {
-    Pieces pieces;
-    pieces.append(from);
-    for (const double s : cuts) {
-        if (is_strictly_between(s, from, to)) pieces.append(s);
-    }
-    pieces.append(to);
-    return pieces;
-}
-
 /// Allowed error of a cut, relative to the duration. The slope of p is zero at a cut, so the value of p changes only by
 /// the square of the error. Local: an error bound of this arithmetic.
 constexpr double kCutError = 0x1p-45;
 
 Times sign_changes_within(const Polynomial& p, double enough);
 
-/// Returns times that cut the duration into pieces on which p is monotone.
-Times monotone_cuts(const Polynomial& p) { return sign_changes_within(p.derivative(), kCutError * p.duration); }
+/// Returns the ends of pieces of the duration on which p is monotone, or changes its sign only once. Returns no ends if
+/// p has one sign.
+Times pieces_of(const Polynomial& p) {
+    Times ends;
+    const Variation variation = variation_on(p, p.duration);
+    if (variation == Variation::kPositive || variation == Variation::kNegative) return ends;
+    ends.append(0.0);
+    for (const double s :
+         variation == Variation::kOneChange ? Times{} : sign_changes_within(p.derivative(), kCutError * p.duration)) {
+        if (is_strictly_between(s, 0.0, p.duration)) ends.append(s);
+    }
+    ends.append(p.duration);
+    return ends;
+}
 
 /// Computes sign_changes() with roots that may have an error of `enough` seconds.
 Times sign_changes_within(const Polynomial& p, double enough) {
     if (p.degree <= 2) return sign_changes_of_quadratic(p);
-    const Variation variation = variation_on(p, p.duration);
-    if (variation == Variation::kPositive || variation == Variation::kNegative) return {};
-    const Pieces pieces =
-        pieces_between(0.0, variation == Variation::kOneChange ? Times{} : monotone_cuts(p), p.duration);
     Times times;
     int sign = 0;      // the last nonzero sign
     double low = 0.0;  // and its time
-    for (int i = 0; i < pieces.count; ++i) {
-        const double high = pieces[i];
+    for (const double high : pieces_of(p)) {
         const int sign_at_high = sign_of(signed_value(p, high));
         if (sign_at_high == 0) continue;
         if (sign_at_high == -sign) times.append(bracketed_root(p, low, high, sign, enough));
@@ -302,10 +290,8 @@ Times down_crossings(const Polynomial& p, double from, double to) {
         select(root);
         return times;
     }
-    const Variation variation = variation_on(p, p.duration);
-    if (variation == Variation::kPositive || variation == Variation::kNegative) return times;
-    const Pieces pieces =
-        pieces_between(0.0, variation == Variation::kOneChange ? Times{} : monotone_cuts(p), p.duration);
+    const Times pieces = pieces_of(p);
+    if (pieces.count == 0) return times;
     double before = signed_value(p, 0.0);
     for (int i = 1; i < pieces.count && pieces[i - 1] < to; ++i) {
         const double after = signed_value(p, pieces[i]);

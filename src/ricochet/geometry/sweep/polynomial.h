@@ -34,9 +34,9 @@ struct Polynomial {
     [[nodiscard]] Polynomial derivative() const;
 };
 
-/// Times in ascending order.
+/// Times in ascending order: roots, or the ends of pieces between them.
 struct Times {
-    std::array<double, Polynomial::kLargestDegree + 1> time{};
+    std::array<double, Polynomial::kLargestDegree + 2> time{};
     int count = 0;
 
     void append(double s) { time[static_cast<std::size_t>(count++)] = s; }
@@ -68,32 +68,15 @@ struct VectorOf {
 };
 using PreciseVec3 = VectorOf<DoubleDouble>;
 
-namespace detail {
-
-inline void set_product(double& result, double x, double y) { result = x * y; }
-inline void set_product(DoubleDouble& result, double x, double y) { result = two_product(x, y); }
-inline void set_difference(double& result, double x, double y) { result = x - y; }
-inline void set_difference(DoubleDouble& result, double x, double y) { result = two_diff(x, y); }
-
-}  // namespace detail
-
 /// Returns p - q. Exact for double-doubles.
 template <class Scalar>
 [[nodiscard]] VectorOf<Scalar> difference(const Vec3& p, const Vec3& q) {
-    VectorOf<Scalar> d;
-    detail::set_difference(d.x, p.x, q.x);
-    detail::set_difference(d.y, p.y, q.y);
-    detail::set_difference(d.z, p.z, q.z);
-    return d;
+    return {difference_as<Scalar>(p.x, q.x), difference_as<Scalar>(p.y, q.y), difference_as<Scalar>(p.z, q.z)};
 }
 
 template <class Scalar>
 [[nodiscard]] Scalar dot_of(const Vec3& u, const Vec3& v) {
-    Scalar x, y, z;
-    detail::set_product(x, u.x, v.x);
-    detail::set_product(y, u.y, v.y);
-    detail::set_product(z, u.z, v.z);
-    return x + y + z;
+    return product_as<Scalar>(u.x, v.x) + product_as<Scalar>(u.y, v.y) + product_as<Scalar>(u.z, v.z);
 }
 template <class Scalar, class Other>
 [[nodiscard]] Scalar dot_of(const VectorOf<Scalar>& u, const Other& v) {
@@ -138,9 +121,7 @@ template <class Scalar>
 template <class Scalar>
 [[nodiscard]] Coefficients<Scalar> point_clearance(const Path& path, Coefficients<Scalar> q,
                                                    const VectorOf<Scalar>& start, double radius) {
-    Scalar radius_squared;
-    detail::set_product(radius_squared, radius, radius);
-    q[0] = dot_of(start, start) - radius_squared;
+    q[0] = dot_of(start, start) - product_as<Scalar>(radius, radius);
     for (int k = 1; k <= path.degree; ++k) {
         const auto i = static_cast<std::size_t>(k);
         q[i] = q[i] + dot_of(start, path.c[i]) * 2.0;

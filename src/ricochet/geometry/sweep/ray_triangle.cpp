@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 #include "ricochet/geometry/predicates/predicates.h"
 
@@ -25,12 +24,6 @@ TriangleFeature edge(std::size_t k) {
 TriangleFeature vertex(std::size_t k) {
     return static_cast<TriangleFeature>(static_cast<std::size_t>(TriangleFeature::kVertexA) + k % 3);
 }
-/// Returns the index of a corner, or of the first corner of an edge.
-std::size_t number_of(TriangleFeature feature) {
-    const auto first = rank(feature) == 2 ? TriangleFeature::kVertexA : TriangleFeature::kEdgeAB;
-    return static_cast<std::size_t>(feature) - static_cast<std::size_t>(first);
-}
-
 ExactDifference exact(const Vec3& direction) { return {direction, Vec3{}}; }
 
 /// Returns the sign of (u x v) . w for cases that the filter does not decide.
@@ -75,18 +68,12 @@ int axis_of(const Ray& ray, const Corners& triangle) {
     return 0;
 }
 
-int dominant_axis(const Vec3& v) {
-    const Vec3 size = abs(v);
-    if (size.x >= size.y && size.x >= size.z) return 0;
-    return size.y >= size.z ? 1 : 2;
-}
-
 /// Returns, as a quotient, t of a corner on the line, or t of the crossing with an edge.
 ExactRatio parameter_in_plane(const Ray& ray, const Corners& triangle, TriangleFeature feature, int axis) {
     const std::size_t k = number_of(feature);
     const ExactDifference from_origin(triangle[k], ray.origin);
     if (rank(feature) == 2) {
-        const int along = dominant_axis(ray.direction);
+        const int along = longest_axis(abs(ray.direction));
         return {widened(Expansion<2>(two_diff(triangle[k][along], ray.origin[along]))),
                 widened(Expansion<2>(DoubleDouble{ray.direction[along], 0.0}))};
     }

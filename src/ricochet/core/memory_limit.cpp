@@ -49,16 +49,6 @@ double group_limit(const std::string& mount, std::string group, const std::strin
     }
 }
 
-bool names_memory(std::string_view controllers) {
-    while (!controllers.empty()) {
-        const std::size_t comma = controllers.find(',');
-        if (controllers.substr(0, comma) == "memory") return true;
-        if (comma == std::string_view::npos) break;
-        controllers.remove_prefix(comma + 1);
-    }
-    return false;
-}
-
 /// Returns the least limit of the groups of the process. Lines of the file are "number:controllers:group"; version 2
 /// leaves the controllers empty.
 double limit_of_groups(const MemoryFiles& files) {
@@ -68,13 +58,13 @@ double limit_of_groups(const MemoryFiles& files) {
         const std::size_t first = line.find(':');
         const std::size_t second = line.find(':', first + 1);
         if (first == std::string::npos || second == std::string::npos) continue;
-        const std::string_view controllers = std::string_view(line).substr(first + 1, second - first - 1);
+        const std::string controllers = line.substr(first + 1, second - first - 1);
         const std::string group = line.substr(second + 1);
         const std::string& mount = files.control_groups.native();
         if (controllers.empty()) {
             least = std::min(least, group_limit(mount, group, "/memory.max"));
             least = std::min(least, group_limit(mount + "/unified", group, "/memory.max"));
-        } else if (names_memory(controllers)) {
+        } else if (("," + controllers + ",").find(",memory,") != std::string::npos) {
             least = std::min(least, group_limit(mount + "/memory", group, "/memory.limit_in_bytes"));
         }
     }

@@ -4,7 +4,6 @@
 
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <string_view>
 
@@ -17,88 +16,61 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the binary writers copy little-endian memory");
 
-// Collects small pieces of output, so that the file is written in blocks.
-class BlockWriter {
-public:
-    explicit BlockWriter(const std::filesystem::path& path) : file_(path) {}
-
-    template <typename... Values>
-    void text(fmt::format_string<const Values&...> form, const Values&... values) {
-        fmt::format_to(std::back_inserter(block_), form, values...);
-        flush_if_full();
-    }
-
-    template <typename Value>
-    void binary(const Value& value) {
-        static_assert(std::is_trivially_copyable_v<Value>);
-        const std::size_t end = block_.size();
-        block_.resize(end + sizeof(Value));
-        std::memcpy(block_.data() + end, &value, sizeof(Value));
-        flush_if_full();
-    }
-
-    void commit() {
-        flush();
-        file_.commit();
-    }
-
-private:
-    static constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
-
-    void flush_if_full() {
-        if (block_.size() >= kBlockBytes) flush();
-    }
-    void flush() {
-        file_.write({block_.data(), block_.size()});
-        block_.clear();
-    }
-
-    AtomicFile file_;
-    fmt::memory_buffer block_;
-};
-
-void write_obj(const TriangleMesh& mesh, BlockWriter& out) {
-    for (const Vec3& v : mesh.vertices) out.text("v {} {} {}\n", v.x, v.y, v.z);
-    for (const Triangle& t : mesh.triangles) out.text("f {} {} {}\n", t[0] + 1ULL, t[1] + 1ULL, t[2] + 1ULL);
+template <typename... Values>
+void text(AtomicFile& out, fmt::format_string<const Values&...> form, const Values&... values) {
+    fmt::memory_buffer piece;
+    fmt::format_to(std::back_inserter(piece), form, values...);
+    out.write({piece.data(), piece.size()});
 }
 
-void write_off(const TriangleMesh& mesh, BlockWriter& out) {
-    out.text("OFF\n{} {} 0\n", mesh.vertices.size(), mesh.triangles.size());
-    for (const Vec3& v : mesh.vertices) out.text("{} {} {}\n", v.x, v.y, v.z);
-    for (const Triangle& t : mesh.triangles) out.text("3 {} {} {}\n", t[0], t[1], t[2]);
+template <typename Value>
+void binary(AtomicFile& out, const Value& value) {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    out.write({reinterpret_cast<const char*>(&value), sizeof value});
 }
 
-void write_ply(const TriangleMesh& mesh, BlockWriter& out) {
-    out.text(
-        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\nproperty double y\n"
-        "property double z\nelement face {}\nproperty list uchar uint vertex_indices\nend_header\n",
-        mesh.vertices.size(), mesh.triangles.size());
+void write_obj(const TriangleMesh& mesh, AtomicFile& out) {
+    for (const Vec3& v : mesh.vertices) text(out, "v {} {} {}\n", v.x, v.y, v.z);
+    for (const Triangle& t : mesh.triangles) text(out, "f {} {} {}\n", t[0] + 1ULL, t[1] + 1ULL, t[2] + 1ULL);
+}
+
+void write_off(const TriangleMesh& mesh, AtomicFile& out) {
+    text(out, "OFF\n{} {} 0\n", mesh.vertices.size(), mesh.triangles.size());
+    for (const Vec3& v : mesh.vertices) text(out, "{} {} {}\n", v.x, v.y, v.z);
+    for (const Triangle& t : mesh.triangles) text(out, "3 {} {} {}\n", t[0], t[1], t[2]);
+}
+
+void write_ply(const TriangleMesh& mesh, AtomicFile& out) {
+    text(out,
+         "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\nproperty double y\n"
+         "property double z\nelement face {}\nproperty list uchar uint vertex_indices\nend_header\n",
+         mesh.vertices.size(), mesh.triangles.size());
     for (const Vec3& v : mesh.vertices) {
-        for (int axis = 0; axis < 3; ++axis) out.binary(v[axis]);
+        for (int axis = 0; axis < 3; ++axis) binary(out, v[axis]);
     }
     for (const Triangle& t : mesh.triangles) {
-        out.binary(std::uint8_t{3});
-        out.binary(t);
+        binary(out, std::uint8_t{3});
+        binary(out, t);
     }
 }
 
-void write_stl_vector(const Vec3& v, const std::filesystem::path& path, BlockWriter& out) {
+void write_stl_vector(const Vec3& v, const std::filesystem::path& path, AtomicFile& out) {
     if (!(max_abs(v) <= static_cast<double>(std::numeric_limits<float>::max()))) {
         throw InputError(fmt::format("{}: coordinate {} does not fit STL's single precision, write OBJ or PLY instead",
                                      path.string(), max_abs(v)));
     }
-    for (int axis = 0; axis < 3; ++axis) out.binary(static_cast<float>(v[axis]));
+    for (int axis = 0; axis < 3; ++axis) binary(out, static_cast<float>(v[axis]));
 }
 
-void write_stl(const TriangleMesh& mesh, const std::filesystem::path& path, BlockWriter& out) {
+void write_stl(const TriangleMesh& mesh, const std::filesystem::path& path, AtomicFile& out) {
     if (mesh.triangles.size() > std::numeric_limits<std::uint32_t>::max()) {
         throw InputError(fmt::format("{}: more than 4294967295 triangles do not fit an STL file", path.string()));
     }
     std::array<char, 80> title{};
     constexpr std::string_view kTitle = "binary STL written by ricochet";
     kTitle.copy(title.data(), kTitle.size());
-    out.binary(title);
-    out.binary(static_cast<std::uint32_t>(mesh.triangles.size()));
+    binary(out, title);
+    binary(out, static_cast<std::uint32_t>(mesh.triangles.size()));
     for (const Triangle& t : mesh.triangles) {
         const Vec3& a = mesh.vertices[t[0]];
         const Vec3& b = mesh.vertices[t[1]];
@@ -107,7 +79,7 @@ void write_stl(const TriangleMesh& mesh, const std::filesystem::path& path, Bloc
         const double size = length(area);
         write_stl_vector(size > 0.0 && std::isfinite(size) ? area / size : Vec3{}, path, out);
         for (const Vec3* corner : {&a, &b, &c}) write_stl_vector(*corner, path, out);
-        out.binary(std::uint16_t{0});
+        binary(out, std::uint16_t{0});
     }
 }
 
@@ -124,7 +96,7 @@ void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& path) {
             fmt::format("{}: files of this format are read only, expected a name that ends in .obj, .ply, .stl or .off",
                         path.string()));
     }
-    BlockWriter out(path);
+    AtomicFile out(path);
     if (format == MeshFormat::kObj) write_obj(mesh, out);
     if (format == MeshFormat::kPly) write_ply(mesh, out);
     if (format == MeshFormat::kStl) write_stl(mesh, path, out);

@@ -50,66 +50,52 @@ void require_size(const std::vector<const KeyedCurve<Vec3>*>& all, double time) 
     }
 }
 
-/// Positions of a scaled mesh, and the number of keys that its motion needs.
-class Stretching {
-public:
-    Stretching(std::span<const Vec3> vertices, const FrameTree& frames, std::size_t frame)
-        : vertices_(vertices), frames_(frames), frame_(frame), factors_(factors_of(frames, frame)) {
-        Box3 box;
-        for (const Vec3& v : vertices) {
-            box.include(v);
-            farthest_ = std::max(farthest_, length(v));
-        }
-        if (!vertices.empty()) tolerance_ = kStretchDeviation * length(box.size());
+/// Returns the keys, in s, of the motion of a mesh.
+std::vector<double> key_times(std::span<const Vec3> vertices, const FrameTree& frames, std::size_t frame, double begin,
+                              double end) {
+    Box3 box;
+    double farthest = 0.0;  // in m, from the frame's origin
+    for (const Vec3& v : vertices) {
+        box.include(v);
+        farthest = std::max(farthest, length(v));
     }
-
-    [[nodiscard]] double next_key(double time) const { return frames_.next_key(frame_, time); }
-
-    /// Returns the number of intervals into which the time between two keys is divided.
-    [[nodiscard]] double pieces(double begin, double end) const {
-        const double inside = kInside * (end - begin);
-        const MotionBounds bounds = frames_.bounds(frame_, begin + inside, end - inside);
-        const double second = bounds.origin[2] + farthest_ * bounds.rotation[2];
+    const double tolerance = kStretchDeviation * box.diagonal();
+    // Returns the number of intervals into which the time between two keys of the frames is divided.
+    const auto pieces_between = [&](double from, double to) {
+        const double inside = kInside * (to - from);
+        const MotionBounds bounds = frames.bounds(frame, from + inside, to - inside);
+        const double second = bounds.origin[2] + farthest * bounds.rotation[2];
         if (!(second > 0.0)) return 1.0;
-        return std::max(1.0, std::ceil((end - begin) * std::sqrt(second / (8.0 * tolerance_))));
-    }
-
-    [[nodiscard]] std::vector<Vec3> positions_at(double time) const {
-        require_size(factors_, time);
-        const AffineMap map = frames_.map(frame_, time);
-        std::vector<Vec3> positions;
-        positions.reserve(vertices_.size());
-        for (const Vec3& v : vertices_) positions.push_back(map.point(v));
-        return positions;
-    }
-
-private:
-    std::span<const Vec3> vertices_;
-    const FrameTree& frames_;
-    std::size_t frame_;
-    std::vector<const KeyedCurve<Vec3>*> factors_;
-    double farthest_ = 0.0;   // in m, from the frame's origin
-    double tolerance_ = 0.0;  // in m
-};
-
-}  // namespace
-
-MeshMotion stretched_motion(std::span<const Vec3> vertices, const FrameTree& frames, std::size_t frame, double begin,
-                            double end) {
-    if (!(begin < end)) refuse("it ends before it begins, expected a later end");
-    const Stretching stretching(vertices, frames, frame);
+        return std::max(1.0, std::ceil((to - from) * std::sqrt(second / (8.0 * tolerance))));
+    };
     std::vector<double> times{begin};
     double keys = 1.0;
     for (double from = begin; from < end;) {
-        const double to = std::min(end, stretching.next_key(from));
-        const double pieces = stretching.pieces(from, to);
+        const double to = std::min(end, frames.next_key(frame, from));
+        const double pieces = pieces_between(from, to);
         keys += pieces;
         require_memory(keys * static_cast<double>(vertices.size() * sizeof(Vec3)), "scale that changes in time");
         for (double k = 1.0; k < pieces; ++k) times.push_back(from + (to - from) * (k / pieces));
         times.push_back(to);
         from = to;
     }
-    return sampled_motion([&](double time) { return stretching.positions_at(time); }, std::move(times));
+    return times;
+}
+
+}  // namespace
+
+MeshMotion stretched_motion(std::span<const Vec3> vertices, const FrameTree& frames, std::size_t frame, double begin,
+                            double end) {
+    if (!(begin < end)) refuse("it ends before it begins, expected a later end");
+    const std::vector<const KeyedCurve<Vec3>*> factors = factors_of(frames, frame);
+    const auto positions_at = [&](double time) {
+        require_size(factors, time);
+        const AffineMap map = frames.map(frame, time);
+        std::vector<Vec3> positions(vertices.begin(), vertices.end());
+        for (Vec3& p : positions) p = map.point(p);
+        return positions;
+    };
+    return sampled_motion(positions_at, key_times(vertices, frames, frame, begin, end));
 }
 
 }  // namespace ricochet

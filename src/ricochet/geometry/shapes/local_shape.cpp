@@ -20,21 +20,6 @@ constexpr double kSegmentError = 0x1p-50;
 /// the square of that error. Local: an error bound of this arithmetic.
 constexpr double kMinimumError = 0x1p-98;
 
-template <class Scalar>
-Vec3 rounded_vector(const VectorOf<Scalar>& v) {
-    return {high(v.x), high(v.y), high(v.z)};
-}
-
-template <class Scalar>
-VectorOf<Scalar> on_segment(const VectorOf<Scalar>& from, const VectorOf<Scalar>& step, const Scalar& t) {
-    return {from.x + t * step.x, from.y + t * step.y, from.z + t * step.z};
-}
-
-template <class Scalar>
-VectorOf<Scalar> step_of(const LocalSegment<Scalar>& s) {
-    return {s.to.x - s.from.x, s.to.y - s.from.y, s.to.z - s.from.z};
-}
-
 /// Returns the fraction at which the height is zero while it changes linearly from `before` > 0 to `after` < before.
 template <class Scalar>
 Scalar crossing(const Scalar& before, const Scalar& after) {
@@ -51,7 +36,7 @@ LocalShape LocalShape::cylinder(const std::array<double, 3>& half_axes) { return
 
 template <class Scalar>
 int LocalShape::side_of_start(const LocalSegment<Scalar>& segment) const {
-    const Vec3 y = rounded_vector(segment.from);
+    const Vec3 y = rounded(segment.from);
     const int lateral = sign_beyond(high(ellipsoid_.value(segment.from)),
                                     ellipsoid_.value_error(y, segment.coordinate_error, segment.unit));
     if (!is_capped_ || lateral > 0) return lateral;
@@ -94,9 +79,9 @@ bool LocalShape::is_clear(const LocalSegment<Scalar>& segment) const {
     if (side < 0) return true;
     const auto part = is_capped_ ? between_caps(segment) : std::optional(Interval<Scalar>{});
     if (!part) return true;
-    const VectorOf<Scalar> step = step_of(segment);
-    const Vec3 y = rounded_vector(segment.from);
-    const Vec3 d = rounded_vector(step);
+    const VectorOf<Scalar> step = segment.to - segment.from;
+    const Vec3 y = rounded(segment.from);
+    const Vec3 d = rounded(step);
     double slope = 0.0;
     double curvature = 0.0;
     for (int i = 0; i < ellipsoid_.axes(); ++i) {
@@ -104,7 +89,7 @@ bool LocalShape::is_clear(const LocalSegment<Scalar>& segment) const {
         curvature += d[i] / ellipsoid_.half_axis(i) * (d[i] / ellipsoid_.half_axis(i));
     }
     const Scalar lowest(curvature > 0.0 ? -slope / curvature : 0.0);
-    const VectorOf<Scalar> nearest = on_segment(segment.from, step, std::clamp(lowest, part->from, part->to));
+    const VectorOf<Scalar> nearest = segment.from + std::clamp(lowest, part->from, part->to) * step;
     const Vec3 magnitude = abs(y) + abs(d);
     const double error =
         ellipsoid_.value_error(magnitude, 4.0 * segment.coordinate_error, 4.0 * segment.unit + kMinimumError);
@@ -190,7 +175,7 @@ double LocalShape::distance_from_outside(const PreciseVec3& from, const PreciseV
     const PreciseVec3 step = to - from;
     const Vec3 direction = rounded(step);
     const auto tangent_at = [&](double t) {
-        const ShapePoint near = closest_point(on_segment(from, step, DoubleDouble(t)));
+        const ShapePoint near = closest_point(from + DoubleDouble(t) * step);
         return Tangent{t, near.distance, dot(near.normal, direction)};
     };
     Tangent low = tangent_at(0.0);

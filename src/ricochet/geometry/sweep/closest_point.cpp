@@ -11,6 +11,8 @@
 namespace ricochet {
 namespace {
 
+using Corners = std::array<Vec3, 3>;
+
 /// Relative size below which a cross product in plain doubles has lost too many digits. Local: it selects the
 /// precision.
 constexpr double kSlenderNormal = 0x1p-4;
@@ -60,28 +62,23 @@ std::optional<Vec3> offset_from_face(const Vec3& p, const Vec3& a, const Vec3& b
     return dot(*normal, nearest) * *normal;
 }
 
-struct Edge {
-    const Vec3& from;
-    const Vec3& to;
-    TriangleFeature edge;
-    TriangleFeature first;
-    TriangleFeature second;
-};
-
 /// Returns true if candidate x is preferred over candidate y.
 bool is_nearer(const ClosestPointOnTriangle& x, const ClosestPointOnTriangle& y) {
     if (x.distance_squared != y.distance_squared) return x.distance_squared < y.distance_squared;
     return rank(x.feature) < rank(y.feature);
 }
 
-ClosestPointOnTriangle closest_point_on_edge(const Vec3& p, const Edge& e) {
-    const ClosestPointOnSegment s = closest_point_on_segment(p, e.from, e.to);
+/// Returns the nearest point of the edge from corner k to the next corner.
+ClosestPointOnTriangle closest_point_on_edge(const Vec3& p, const Corners& corners, std::size_t k) {
+    const std::size_t next = (k + 1) % 3;
+    const Vec3& from = corners[k];
+    const Vec3& to = corners[next];
+    const ClosestPointOnSegment s = closest_point_on_segment(p, from, to);
     const double squared = length_squared(s.offset);
-    if (s.fraction <= 0.0) return {e.from, s.offset, squared, e.first};
-    if (s.fraction >= 1.0) return {e.to, s.offset, squared, e.second};
-    const Vec3 point =
-        s.fraction <= 0.5 ? e.from + s.fraction * (e.to - e.from) : e.to - (1.0 - s.fraction) * (e.to - e.from);
-    return {point, s.offset, squared, e.edge};
+    if (s.fraction <= 0.0) return {from, s.offset, squared, vertex_of(k)};
+    if (s.fraction >= 1.0) return {to, s.offset, squared, vertex_of(next)};
+    const Vec3 point = s.fraction <= 0.5 ? from + s.fraction * (to - from) : to - (1.0 - s.fraction) * (to - from);
+    return {point, s.offset, squared, edge_of(k)};
 }
 
 /// Returns the weights of a point inside the face. Lengths are first divided by the longest one, so that no product
@@ -153,45 +150,34 @@ ClosestPointOnSegment closest_point_on_segment(const Vec3& p, const Vec3& a, con
 }
 
 ClosestPointOnTriangle closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-    using enum TriangleFeature;
-    ClosestPointOnTriangle nearest = closest_point_on_edge(p, {a, b, kEdgeAB, kVertexA, kVertexB});
-    for (const Edge& edge : {Edge{b, c, kEdgeBC, kVertexB, kVertexC}, Edge{c, a, kEdgeCA, kVertexC, kVertexA}}) {
-        const ClosestPointOnTriangle candidate = closest_point_on_edge(p, edge);
+    const Corners corners{a, b, c};
+    ClosestPointOnTriangle nearest = closest_point_on_edge(p, corners, 0);
+    for (const std::size_t k : {1U, 2U}) {
+        const ClosestPointOnTriangle candidate = closest_point_on_edge(p, corners, k);
         if (is_nearer(candidate, nearest)) nearest = candidate;
     }
     if (const std::optional<Vec3> offset = offset_from_face(p, a, b, c)) {
-        const ClosestPointOnTriangle face{p - *offset, *offset, length_squared(*offset), kFace};
+        const ClosestPointOnTriangle face{p - *offset, *offset, length_squared(*offset), TriangleFeature::kFace};
         if (is_nearer(face, nearest)) return face;
     }
     return nearest;
 }
 
 Vec3 barycentric_coordinates(const ClosestPointOnTriangle& nearest, const Vec3& a, const Vec3& b, const Vec3& c) {
-    const auto along = [&](const Vec3& from, const Vec3& to) {
-        return closest_point_on_segment(nearest.point, from, to).fraction;
+    const Corners corners{a, b, c};
+    const Corners units{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+    const auto on_edge = [&](std::size_t k) {
+        const std::size_t next = (k + 1) % 3;
+        const double fraction = closest_point_on_segment(nearest.point, corners[k], corners[next]).fraction;
+        return (1.0 - fraction) * units[k] + fraction * units[next];
     };
-    switch (nearest.feature) {
-        case TriangleFeature::kVertexA:
-            return {1, 0, 0};
-        case TriangleFeature::kVertexB:
-            return {0, 1, 0};
-        case TriangleFeature::kVertexC:
-            return {0, 0, 1};
-        case TriangleFeature::kEdgeAB:
-            return {1.0 - along(a, b), along(a, b), 0};
-        case TriangleFeature::kEdgeBC:
-            return {0, 1.0 - along(b, c), along(b, c)};
-        case TriangleFeature::kEdgeCA:
-            return {along(c, a), 0, 1.0 - along(c, a)};
-        case TriangleFeature::kFace:
-            break;
-    }
+    if (rank(nearest.feature) == 1) return on_edge(number_of(nearest.feature));
+    if (rank(nearest.feature) == 2) return units[number_of(nearest.feature)];
     const Vec3 weights = face_weights(nearest.point, a, b, c);
     // A triangle that rounding cannot distinguish from a line has no accurate weights. The weights of a point on an
     // edge then reproduce the nearest point better.
-    const std::array<Vec3, 4> candidates{
-        Vec3{1.0 - along(a, b), along(a, b), 0}, Vec3{0, 1.0 - along(b, c), along(b, c)},
-        Vec3{along(c, a), 0, 1.0 - along(c, a)}, weights / (weights.x + weights.y + weights.z)};
+    const std::array<Vec3, 4> candidates{on_edge(0), on_edge(1), on_edge(2),
+                                         weights / (weights.x + weights.y + weights.z)};
     const auto miss = [&](const Vec3& w) { return length_squared(w.x * a + w.y * b + w.z * c - nearest.point); };
     return *std::min_element(candidates.begin(), candidates.end(),
                              [&](const Vec3& v, const Vec3& w) { return miss(v) < miss(w); });

@@ -20,6 +20,14 @@ enum class TriangleFeature : unsigned char { kFace, kEdgeAB, kEdgeBC, kEdgeCA, k
            static_cast<int>(feature >= TriangleFeature::kVertexA);
 }
 
+/// Return an edge (AB, BC, CA) or a vertex (A, B, C) by its index modulo 3.
+[[nodiscard]] constexpr TriangleFeature edge_of(std::size_t k) {
+    return static_cast<TriangleFeature>(static_cast<std::size_t>(TriangleFeature::kEdgeAB) + k % 3);
+}
+[[nodiscard]] constexpr TriangleFeature vertex_of(std::size_t k) {
+    return static_cast<TriangleFeature>(static_cast<std::size_t>(TriangleFeature::kVertexA) + k % 3);
+}
+
 /// Returns the index of an edge (AB, BC, CA) or of a vertex (A, B, C): 0, 1 or 2.
 [[nodiscard]] constexpr std::size_t number_of(TriangleFeature feature) {
     const auto first = rank(feature) == 2 ? TriangleFeature::kVertexA : TriangleFeature::kEdgeAB;

@@ -65,25 +65,13 @@ public:
     /// mid-time.
     [[nodiscard]] bool is_free_of(TriangleFeature feature) {
         normal_ = cross(u_, v_);
-        switch (feature) {
-            case TriangleFeature::kFace:
-                return is_over_face();
-            case TriangleFeature::kEdgeAB:
-                return is_beyond_ab() || is_over_face();
-            case TriangleFeature::kEdgeBC:
-                return is_beyond_bc() || is_over_face();
-            case TriangleFeature::kEdgeCA:
-                return is_beyond_ca() || is_over_face();
-            case TriangleFeature::kVertexA:
-                return is_beyond_corner(w_, u_, v_) || is_beyond_ab() || is_beyond_ca() || is_over_face();
-            case TriangleFeature::kVertexB:
-                return is_beyond_corner(difference(w_, u_), difference(v_, u_), negative(u_)) || is_beyond_ab() ||
-                       is_beyond_bc() || is_over_face();
-            case TriangleFeature::kVertexC:
-                break;
+        if (feature != TriangleFeature::kFace) {
+            const std::size_t k = number_of(feature);
+            const bool is_vertex = rank(feature) == 2;
+            if (is_vertex && (is_beyond_corner(k) || is_beyond_edge((k + 2) % 3))) return true;
+            if (is_beyond_edge(k)) return true;
         }
-        return is_beyond_corner(difference(w_, v_), negative(v_), difference(u_, v_)) || is_beyond_bc() ||
-               is_beyond_ca() || is_over_face();
+        return is_over_face();
     }
     /// Returns true if a direction, of any length, proves that the interval is free.
     [[nodiscard]] bool is_free_along(const Vec3& n) const {
@@ -109,18 +97,27 @@ private:
         if (radius_ > 0.0) return is_further(height * height, dot(normal_, normal_));
         return height.has_sign(1) || height.has_sign(-1);
     }
-    [[nodiscard]] bool is_beyond_edge(const Vector<Real, Degree>& w, const Vector<Real, 1>& edge) const {
-        if (!dot(w, cross(edge, normal_)).has_sign(1)) return false;
-        if (radius_ == 0.0) return true;
-        const auto across = cross(w, edge);
-        return is_further(dot(across, across), dot(edge, edge));
+    /// Returns the vector from corner k to the point.
+    [[nodiscard]] Vector<Real, Degree> offset_from(std::size_t k) const {
+        if (k == 0) return w_;
+        return difference(w_, k == 1 ? u_ : v_);
     }
-    [[nodiscard]] bool is_beyond_ab() const { return is_beyond_edge(w_, u_); }
-    [[nodiscard]] bool is_beyond_bc() const { return is_beyond_edge(difference(w_, u_), difference(v_, u_)); }
-    [[nodiscard]] bool is_beyond_ca() const { return is_beyond_edge(difference(w_, v_), negative(v_)); }
-    [[nodiscard]] bool is_beyond_corner(const Vector<Real, Degree>& w, const Vector<Real, 1>& e,
-                                        const Vector<Real, 1>& f) const {
-        if (!dot(w, e).has_sign(-1) || !dot(w, f).has_sign(-1)) return false;
+    /// Returns the vector from corner k to the next corner.
+    [[nodiscard]] Vector<Real, 1> edge(std::size_t k) const {
+        if (k == 0) return u_;
+        return k == 1 ? difference(v_, u_) : negative(v_);
+    }
+    [[nodiscard]] bool is_beyond_edge(std::size_t k) const {
+        const Vector<Real, Degree> w = offset_from(k);
+        const Vector<Real, 1> along = edge(k);
+        if (!dot(w, cross(along, normal_)).has_sign(1)) return false;
+        if (radius_ == 0.0) return true;
+        const auto across = cross(w, along);
+        return is_further(dot(across, across), dot(along, along));
+    }
+    [[nodiscard]] bool is_beyond_corner(std::size_t k) const {
+        const Vector<Real, Degree> w = offset_from(k);
+        if (!dot(w, edge(k)).has_sign(-1) || !dot(w, edge((k + 2) % 3)).has_sign(1)) return false;
         return radius_ == 0.0 || is_further(dot(w, w), constant(1.0));
     }
 

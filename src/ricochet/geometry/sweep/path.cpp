@@ -38,33 +38,20 @@ Vec3 parabola_end(const Vec3& x, const Vec3& v, const Vec3& a, double duration) 
 }
 
 Path line_path(const Vec3& x, const Vec3& v, double duration) {
-    Path path;
-    path.c = {x, v, Vec3{}, Vec3{}};
-    path.degree = 1;
-    path.duration = duration;
-    path.end = line_end(x, v, duration);
-    return path;
+    return {.c = {x, v, Vec3{}, Vec3{}}, .degree = 1, .duration = duration, .end = line_end(x, v, duration)};
 }
 
 Path parabola_path(const Vec3& x, const Vec3& v, const Vec3& a, double duration) {
     if (a == Vec3{}) return line_path(x, v, duration);
-    Path path;
-    path.c = {x, v, 0.5 * a, Vec3{}};
-    path.degree = 2;
-    path.duration = duration;
-    path.end = parabola_end(x, v, a, duration);
-    return path;
+    return {.c = {x, v, 0.5 * a, Vec3{}}, .degree = 2, .duration = duration, .end = parabola_end(x, v, a, duration)};
 }
 
 Path hermite_path(const Vec3& x0, const Vec3& v0, const Vec3& x1, const Vec3& v1, double duration) {
     const Vec3 mean_velocity = (x1 - x0) / duration;
-    Path path;
-    path.c = {x0, v0, (3.0 * mean_velocity - 2.0 * v0 - v1) / duration,
-              ((v0 + v1 - 2.0 * mean_velocity) / duration) / duration};
-    path.degree = path.c[3] == Vec3{} ? (path.c[2] == Vec3{} ? 1 : 2) : 3;
-    path.duration = duration;
-    path.end = flush_tiny(x1);
-    return path;
+    const Vec3 square = (3.0 * mean_velocity - 2.0 * v0 - v1) / duration;
+    const Vec3 cube = ((v0 + v1 - 2.0 * mean_velocity) / duration) / duration;
+    const int degree = cube == Vec3{} ? (square == Vec3{} ? 1 : 2) : 3;
+    return {.c = {x0, v0, square, cube}, .degree = degree, .duration = duration, .end = flush_tiny(x1)};
 }
 
 }  // namespace ricochet

@@ -83,20 +83,25 @@ template <class Scalar, class Other>
     return u.x * v.x + u.y * v.y + u.z * v.z;
 }
 
-[[nodiscard]] inline PreciseVec3 operator+(const PreciseVec3& u, const PreciseVec3& v) {
+template <class Scalar>
+[[nodiscard]] VectorOf<Scalar> operator+(const VectorOf<Scalar>& u, const VectorOf<Scalar>& v) {
     return {u.x + v.x, u.y + v.y, u.z + v.z};
 }
-[[nodiscard]] inline PreciseVec3 operator-(const PreciseVec3& u, const PreciseVec3& v) {
+template <class Scalar>
+[[nodiscard]] VectorOf<Scalar> operator-(const VectorOf<Scalar>& u, const VectorOf<Scalar>& v) {
     return {u.x - v.x, u.y - v.y, u.z - v.z};
 }
-template <class Factor>
-[[nodiscard]] PreciseVec3 operator*(const Factor& s, const PreciseVec3& u) {
+template <class Factor, class Scalar>
+[[nodiscard]] VectorOf<Scalar> operator*(const Factor& s, const VectorOf<Scalar>& u) {
     return {u.x * s, u.y * s, u.z * s};
 }
 [[nodiscard]] inline PreciseVec3 cross_of(const PreciseVec3& u, const PreciseVec3& v) {
     return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
 }
-[[nodiscard]] inline Vec3 rounded(const PreciseVec3& u) { return {u.x.hi, u.y.hi, u.z.hi}; }
+template <class Scalar>
+[[nodiscard]] Vec3 rounded(const VectorOf<Scalar>& u) {
+    return {high(u.x), high(u.y), high(u.z)};
+}
 
 /// Coefficients of ascending powers. Coefficients above the degree are zero.
 template <class Scalar>

@@ -18,12 +18,6 @@ constexpr double kAccuracy = 0x1p-60;
 constexpr double kSeparated = 0x1p-48;
 
 const Vec3& corner(const Corners& triangle, std::size_t k) { return triangle[k % 3]; }
-TriangleFeature edge(std::size_t k) {
-    return static_cast<TriangleFeature>(static_cast<std::size_t>(TriangleFeature::kEdgeAB) + k % 3);
-}
-TriangleFeature vertex(std::size_t k) {
-    return static_cast<TriangleFeature>(static_cast<std::size_t>(TriangleFeature::kVertexA) + k % 3);
-}
 ExactDifference exact(const Vec3& direction) { return {direction, Vec3{}}; }
 
 /// Returns the sign of (u x v) . w for cases that the filter does not decide.
@@ -101,7 +95,7 @@ struct CommonPoints {
 /// points of line and triangle.
 TriangleFeature feature_of_origin(const std::array<int, 3>& sides) {
     for (std::size_t k = 0; k < 3; ++k) {
-        if (sides[k] == 0 && sides[(k + 1) % 3] == 0) return edge(k);
+        if (sides[k] == 0 && sides[(k + 1) % 3] == 0) return edge_of(k);
     }
     return TriangleFeature::kFace;
 }
@@ -113,8 +107,8 @@ std::optional<RayIntersection> meet_in_plane(const Ray& ray, const Corners& tria
     const auto sides = sides_of(ray, triangle, axis);
     CommonPoints points;
     for (std::size_t k = 0; k < 3; ++k) {
-        if (sides[k] == 0) points.add(ray, triangle, vertex(k), axis);
-        if (are_opposite(sides[k], sides[(k + 1) % 3])) points.add(ray, triangle, edge(k), axis);
+        if (sides[k] == 0) points.add(ray, triangle, vertex_of(k), axis);
+        if (are_opposite(sides[k], sides[(k + 1) % 3])) points.add(ray, triangle, edge_of(k), axis);
     }
     RayIntersection intersection;
     intersection.in_plane = true;
@@ -159,9 +153,9 @@ DoubleDouble crossing(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& 
 TriangleFeature feature_of_sides(const std::array<int, 3>& sides) {
     for (std::size_t k = 0; k < 3; ++k) {
         if (sides[k] != 0) continue;
-        if (sides[(k + 1) % 3] == 0) return vertex(k + 1);
-        if (sides[(k + 2) % 3] == 0) return vertex(k);
-        return edge(k);
+        if (sides[(k + 1) % 3] == 0) return vertex_of(k + 1);
+        if (sides[(k + 2) % 3] == 0) return vertex_of(k);
+        return edge_of(k);
     }
     return TriangleFeature::kFace;
 }

@@ -6,6 +6,12 @@
 
 namespace ricochet {
 
+/// Returns the axis of the largest component; of equal components, the first one.
+[[nodiscard]] inline int longest_axis(const Vec3& size) {
+    if (size.x >= size.y && size.x >= size.z) return 0;
+    return size.y >= size.z ? 1 : 2;
+}
+
 /// Returns the box around points and boxes.
 template <class... Parts>
 [[nodiscard]] Box3 box_around(const Parts&... parts) {

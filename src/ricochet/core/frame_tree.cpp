@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <type_traits>
 #include <unordered_map>
 #include <utility>
 
@@ -102,9 +103,8 @@ void move(MovingPose& pose, const Oscillation& motion, double time) {
     shift(pose, wave.value * size, wave.rate * size, wave.second * size);
 }
 
-/// The velocities and accelerations of the pose are invalid afterwards.
 void move(MovingPose& pose, const KeyedScale& motion, double time) {
-    scale_axes(pose.world_from_frame, motion.factors.value(time));
+    scale(pose.world_from_frame, motion.factors.value(time));
 }
 
 DerivativeBounds wave_bounds(double amplitude, double frequency) {
@@ -147,8 +147,14 @@ double next_key_of(const FrameMotion& motion, double time) {
 struct HashOf {
     StateHash& hash;
 
+    template <class... Values>
+    void add(const Values&... values) const {
+        (add_one(values), ...);
+    }
+    void add_one(double value) const { hash.add(value); }
+    void add_one(const Vec3& value) const { hash.add(value); }
     template <class Value>
-    void add(const KeyedCurve<Value>& curve) const {
+    void add_one(const KeyedCurve<Value>& curve) const {
         hash.add(static_cast<std::uint64_t>(curve.interpolation()));
         hash.add(static_cast<std::uint64_t>(curve.ends()));
         hash.add(static_cast<std::uint64_t>(curve.keys().size()));
@@ -157,24 +163,12 @@ struct HashOf {
             hash.add(key.value);
         }
     }
-    void operator()(const KeyedRotation& motion) const {
-        hash.add(motion.axis);
-        add(motion.degrees);
-    }
+    void operator()(const KeyedRotation& motion) const { add(motion.axis, motion.degrees); }
     void operator()(const KeyedTranslation& motion) const { add(motion.path); }
     void operator()(const KeyedScale& motion) const { add(motion.factors); }
-    void operator()(const Spin& motion) const {
-        hash.add(motion.axis);
-        hash.add(motion.rate);
-    }
-    void operator()(const Swing& motion) const {
-        hash.add(motion.axis);
-        for (const double number : {motion.amplitude, motion.frequency, motion.phase}) hash.add(number);
-    }
-    void operator()(const Oscillation& motion) const {
-        hash.add(motion.amplitude);
-        for (const double number : {motion.frequency, motion.phase}) hash.add(number);
-    }
+    void operator()(const Spin& motion) const { add(motion.axis, motion.rate); }
+    void operator()(const Swing& motion) const { add(motion.axis, motion.amplitude, motion.frequency, motion.phase); }
+    void operator()(const Oscillation& motion) const { add(motion.amplitude, motion.frequency, motion.phase); }
 };
 
 void require_factors(const FrameDescription& frame, const KeyedScale& motion) {
@@ -195,10 +189,6 @@ void prepare(FrameDescription& frame) {
     detail::require_finite(frame.translation, of_frame("the translation"), "m");
     detail::require_finite(frame.rotation_degrees, of_frame("the rotation"), "degrees");
     frame.rotation_axis = detail::unit_direction(frame.rotation_axis, of_frame("the rotation's axis"));
-    const auto check_wave = [&](double frequency, double phase) {
-        detail::require_finite(frequency, of_frame("a motion's frequency"), "Hz");
-        detail::require_finite(phase, of_frame("a motion's phase"), "degrees");
-    };
     for (FrameMotion& motion : frame.motions) {
         std::visit(
             [&](auto& m) {
@@ -206,16 +196,15 @@ void prepare(FrameDescription& frame) {
                     m.axis = detail::unit_direction(m.axis, of_frame("a motion's axis"));
                 if constexpr (requires { m.rate; })
                     detail::require_finite(m.rate, of_frame("a motion's rate"), "degrees/s");
-                if constexpr (requires { m.frequency; }) check_wave(m.frequency, m.phase);
+                if constexpr (requires { m.frequency; }) {
+                    detail::require_finite(m.frequency, of_frame("a motion's frequency"), "Hz");
+                    detail::require_finite(m.phase, of_frame("a motion's phase"), "degrees");
+                    const bool is_angle = std::is_same_v<decltype(m.amplitude), double>;
+                    detail::require_finite(m.amplitude, of_frame("a motion's amplitude"), is_angle ? "degrees" : "m");
+                }
+                if constexpr (requires { m.factors; }) require_factors(frame, m);
             },
             motion);
-        if (const auto* swing = std::get_if<Swing>(&motion)) {
-            detail::require_finite(swing->amplitude, of_frame("a motion's amplitude"), "degrees");
-        } else if (const auto* oscillation = std::get_if<Oscillation>(&motion)) {
-            detail::require_finite(oscillation->amplitude, of_frame("a motion's amplitude"), "m");
-        } else if (const auto* growth = std::get_if<KeyedScale>(&motion)) {
-            require_factors(frame, *growth);
-        }
     }
 }
 

@@ -126,17 +126,9 @@ DerivativeBounds product(const DerivativeBounds& f, const DerivativeBounds& g) {
 }
 
 std::string_view name_of(Interpolation interpolation) {
-    switch (interpolation) {
-        case Interpolation::linear:
-            return "linear";
-        case Interpolation::slow_in_slow_out:
-            return "slow_in_slow_out";
-        case Interpolation::spline:
-            return "spline";
-        case Interpolation::cubic_spline:
-            return "cubic_spline";
-    }
-    return "";
+    constexpr std::array<std::string_view, 4> kNames{"linear", "slow_in_slow_out", "spline", "cubic_spline"};
+    const auto number = static_cast<std::size_t>(interpolation);
+    return number < kNames.size() ? kNames[number] : "";
 }
 
 template <class Value>

@@ -38,6 +38,12 @@ void turn(MovingPose& pose, const Vec3& axis, double degrees, double rate, doubl
     for (Vec3* row : {&map.row_x, &map.row_y, &map.row_z}) *row = turned_row(*row, axis, sine, cosine);
 }
 
+void scale(AffineMap& map, const Vec3& factors) {
+    for (Vec3* row : {&map.row_x, &map.row_y, &map.row_z}) {
+        *row = {row->x * factors.x, row->y * factors.y, row->z * factors.z};
+    }
+}
+
 // Returns bounds of exp(i angle) and its derivatives, by Faa di Bruno's formula.
 DerivativeBounds turn_bounds(DerivativeBounds a) {
     for (double& bound : a) bound *= std::numbers::pi / 180.0;

@@ -2,6 +2,8 @@
 /// Pose of a frame of reference at a time, and its motion at that time.
 #pragma once
 
+#include <array>
+
 #include "ricochet/core/keyed_curve.h"
 #include "ricochet/core/transform.h"
 #include "ricochet/core/vec3.h"
@@ -42,6 +44,10 @@ struct MotionBounds {
 void shift(MovingPose& pose, const Vec3& offset, const Vec3& rate = {}, const Vec3& second = {});
 /// Rotates a frame about one of its own axes, of unit length, by an angle in degrees with its derivatives.
 void turn(MovingPose& pose, const Vec3& axis, double degrees, double rate = 0.0, double second = 0.0);
+
+/// Scales the map of a frame along its own axes. The velocities and accelerations of the frame's pose are invalid
+/// afterwards.
+void scale(AffineMap& map, const Vec3& factors);
 
 /// Returns bounds of the matrix of a rotation about a fixed axis. degrees: bounds of its angle.
 [[nodiscard]] DerivativeBounds turn_bounds(DerivativeBounds degrees);

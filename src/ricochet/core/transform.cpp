@@ -22,13 +22,7 @@ SineCosine sine_cosine_degrees(double degrees) {
 
 }  // namespace
 
-void scale_axes(AffineMap& map, const Vec3& factors) {
-    for (Vec3* row : {&map.row_x, &map.row_y, &map.row_z}) {
-        *row = {row->x * factors.x, row->y * factors.y, row->z * factors.z};
-    }
-}
-
-// Uses Rodrigues' rotation formula.
+// Uses Rodrigues' rotation formula. The columns of the matrix are multiplied by the placement's scale.
 AffineMap world_from_local(const Placement& placement) {
     if (!is_finite(placement.position) || !is_finite(placement.scale) || !std::isfinite(placement.rotation_degrees)) {
         throw InputError("placement: found a number that is not finite, expected finite numbers");
@@ -43,7 +37,9 @@ AffineMap world_from_local(const Placement& placement) {
     map.row_x = Vec3{c + d * k.x * k.x, d * k.x * k.y - s * k.z, d * k.x * k.z + s * k.y};
     map.row_y = Vec3{d * k.x * k.y + s * k.z, c + d * k.y * k.y, d * k.y * k.z - s * k.x};
     map.row_z = Vec3{d * k.x * k.z - s * k.y, d * k.y * k.z + s * k.x, c + d * k.z * k.z};
-    scale_axes(map, placement.scale);
+    for (Vec3* row : {&map.row_x, &map.row_y, &map.row_z}) {
+        *row = {row->x * placement.scale.x, row->y * placement.scale.y, row->z * placement.scale.z};
+    }
     map.translation = placement.position;
     return map;
 }

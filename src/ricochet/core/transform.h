@@ -37,9 +37,6 @@ struct AffineMap {
     }
 };
 
-/// Scales a map along its local axes, before it is applied.
-void scale_axes(AffineMap& map, const Vec3& factors);
-
 /// Returns the map of a placement. Throws InputError for numbers that are not finite and an axis without length.
 /// Multiples of 90 degrees about a coordinate axis are exact.
 [[nodiscard]] AffineMap world_from_local(const Placement& placement);

@@ -70,11 +70,6 @@ struct Vec3 {
 [[nodiscard]] inline double max_abs(const Vec3& a) {
     return std::max(std::fabs(a.x), std::max(std::fabs(a.y), std::fabs(a.z)));
 }
-/// Returns the axis of the largest component; of equal components, the first one.
-[[nodiscard]] constexpr int longest_axis(const Vec3& size) {
-    if (size.x >= size.y && size.x >= size.z) return 0;
-    return size.y >= size.z ? 1 : 2;
-}
 [[nodiscard]] inline bool is_finite(const Vec3& a) {
     return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }

@@ -41,6 +41,11 @@ void require_positions(std::span<const Vec3> points, const char* name) {
                                  wrong - points.begin(), wrong->x, wrong->y, wrong->z, kLargestCoordinate));
 }
 
+MeshHits no_hits(std::size_t count) {
+    return {std::vector<std::int64_t>(count, kNoHit), std::vector<double>(count, kInfinity),
+            std::vector<Vec3>(count, Vec3{kNan, kNan, kNan})};
+}
+
 MeshIndex::MeshIndex(TriangleMesh mesh) : mesh_(std::make_shared<const TriangleMesh>(checked(std::move(mesh)))) {
     clusters_ = std::make_shared<const TriangleClusters>(make_clusters(mesh_->vertices, mesh_->triangles));
     finish();

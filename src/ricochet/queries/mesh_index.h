@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -16,6 +17,7 @@
 #include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/mesh/mesh_interior.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
+#include "ricochet/queries/mesh_queries.h"
 #include "ricochet/queries/mesh_winding.h"
 
 namespace ricochet {
@@ -67,6 +69,12 @@ private:
     mutable std::unique_ptr<MeshInterior> interior_;
     mutable std::optional<std::vector<BoundaryEdge>> boundary_;
 };
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Returns `count` results without a hit.
+[[nodiscard]] MeshHits no_hits(std::size_t count);
 
 /// Throws InputError "NAME[i]: found ..., expected ..." for the first point that is not finite or beyond 1e75.
 void require_positions(std::span<const Vec3> points, const char* name);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "ricochet/core/error.h"
@@ -12,8 +13,6 @@
 #include "ricochet/geometry/sweep/closest_point.h"
 #include "ricochet/geometry/sweep/point_sweep.h"
 #include "ricochet/queries/mesh_index.h"
-#include "ricochet/queries/mesh_queries.h"
-#include "ricochet/queries/no_hits.h"
 
 namespace ricochet {
 namespace {
@@ -85,10 +84,8 @@ std::vector<double> MeshQueries::winding_numbers(std::span<const Vec3> points) c
 NearestPoints MeshQueries::closest_points(std::span<const Vec3> points, double within) const {
     if (!(within >= 0.0))
         throw InputError(fmt::format("within: found {}, expected a distance of at least 0 m", within));
-    NearestPoints result;
-    result.triangle.assign(points.size(), kNoHit);
-    result.distance.assign(points.size(), kInfinity);
-    result.point.assign(points.size(), Vec3{kNan, kNan, kNan});
+    MeshHits none = no_hits(points.size());
+    NearestPoints result{std::move(none.triangle), std::move(none.distance), std::move(none.point)};
     for_each_point(points, [&](std::size_t i) {
         const auto found = nearest(*index_, points[i], within);
         if (!found) return;

@@ -11,8 +11,6 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/sweep/ray_triangle.h"
 #include "ricochet/queries/mesh_index.h"
-#include "ricochet/queries/mesh_queries.h"
-#include "ricochet/queries/no_hits.h"
 #include "ricochet/queries/ray_crossings.h"
 
 namespace ricochet {

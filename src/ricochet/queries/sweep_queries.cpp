@@ -18,8 +18,6 @@
 #include "ricochet/geometry/sweep/point_sweep.h"
 #include "ricochet/geometry/sweep/sphere_sweep.h"
 #include "ricochet/queries/mesh_index.h"
-#include "ricochet/queries/mesh_queries.h"
-#include "ricochet/queries/no_hits.h"
 
 namespace ricochet {
 namespace {

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "ricochet/core/box_tools.h"
 #include "ricochet/core/error.h"
 
 namespace ricochet::verify {

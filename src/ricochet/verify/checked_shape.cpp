@@ -1,7 +1,6 @@
 #include "ricochet/verify/checked_shape.h"
 
 #include <algorithm>
-#include <array>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <cstddef>

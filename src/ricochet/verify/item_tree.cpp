@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "ricochet/core/box_tools.h"
+
 namespace ricochet::verify {
 
 ItemTree::ItemTree(std::uint32_t count, std::uint32_t leaf_size, const std::function<Vec3(std::uint32_t)>& center_of)

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "ricochet/core/box_tools.h"
-
 namespace ricochet::verify {
 
 TriangleTree::TriangleTree(const std::vector<NamedTriangle>& triangles) {

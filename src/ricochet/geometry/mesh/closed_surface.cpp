@@ -1,7 +1,6 @@
 #include "ricochet/geometry/mesh/closed_surface.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <span>
 #include <utility>
 

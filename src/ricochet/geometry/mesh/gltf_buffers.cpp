@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <system_error>
 #include <utility>
 
@@ -43,12 +44,6 @@ std::string decode_base64(const GltfLocation& uri, std::string_view text) {
     return bytes;
 }
 
-int hex_digit(char c) {
-    if (c >= '0' && c <= '9') return c - '0';
-    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-    return c >= 'A' && c <= 'F' ? c - 'A' + 10 : kNoDigit;
-}
-
 // Decodes percent-encoded bytes, such as "%20" for a blank.
 std::string without_percents(const GltfLocation& uri, std::string_view text) {
     std::string plain;
@@ -57,10 +52,12 @@ std::string without_percents(const GltfLocation& uri, std::string_view text) {
             plain += text[i];
             continue;
         }
-        const int high = i + 2 < text.size() ? hex_digit(text[i + 1]) : kNoDigit;
-        const int low = i + 2 < text.size() ? hex_digit(text[i + 2]) : kNoDigit;
-        if (high == kNoDigit || low == kNoDigit) uri.fail(fmt::format("{} ends within a %", in_quotes(text)));
-        plain += static_cast<char>(16 * high + low);
+        const std::string_view digits = text.substr(i + 1, 2);
+        unsigned code = 0;
+        const char* const end = digits.data() + digits.size();
+        if (digits.size() != 2 || std::from_chars(digits.data(), end, code, 16).ptr != end)
+            uri.fail(fmt::format("{} ends within a %", in_quotes(text)));
+        plain += static_cast<char>(code);
         i += 2;
     }
     return plain;

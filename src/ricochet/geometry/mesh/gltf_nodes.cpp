@@ -55,7 +55,11 @@ AffineMap parent_from(const GltfLocation& node) {
     }
     AffineMap map;
     if (!rotation.empty()) turn(map, node, rotation);
-    if (!scale.empty()) scale_axes(map, {scale[0], scale[1], scale[2]});
+    if (!scale.empty()) {
+        for (auto row : {&AffineMap::row_x, &AffineMap::row_y, &AffineMap::row_z}) {
+            map.*row = {(map.*row).x * scale[0], (map.*row).y * scale[1], (map.*row).z * scale[2]};
+        }
+    }
     if (!translation.empty()) map.translation = {translation[0], translation[1], translation[2]};
     return map;
 }

@@ -51,16 +51,16 @@ struct WeldReport {
 
 /// A mesh file's contents.
 struct ImportedMesh {
-    PolygonMesh polygons{};                       ///< faces as listed in the file
-    TriangleMesh mesh{};                          ///< the collision mesh: all faces, triangulated
-    std::vector<std::uint32_t> triangle_face{};   ///< face of every triangle
-    std::string format{};                         ///< for example "OBJ" or "PLY, binary little endian"
-    std::optional<WeldReport> weld{};             ///< STL and glTF only
+    PolygonMesh polygons;                         ///< faces as listed in the file
+    TriangleMesh mesh;                            ///< the collision mesh: all faces, triangulated
+    std::vector<std::uint32_t> triangle_face;     ///< face of every triangle
+    std::string format;                           ///< for example "OBJ" or "PLY, binary little endian"
+    std::optional<WeldReport> weld;               ///< STL and glTF only
     std::size_t faces_with_repeated_corners = 0;  ///< faces that name a vertex twice; they are kept
     std::size_t crossing_faces = 0;               ///< polygons whose outline crosses itself; they are kept
     bool y_up = false;                            ///< the file has y up, as in glTF; the result has z up
-    std::vector<std::filesystem::path> files{};   ///< read besides the file itself
-    std::vector<std::string> notes{};             ///< notes on content that was not read, one sentence each
+    std::vector<std::filesystem::path> files;     ///< read besides the file itself
+    std::vector<std::string> notes;               ///< notes on content that was not read, one sentence each
 };
 
 /// Amount of a file's content that is stored.

@@ -5,10 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <charconv>
-#include <cstring>
+#include <utility>
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/memory_limit.h"
@@ -109,6 +108,14 @@ FileBytes read_regular_file(const std::filesystem::path& path) {
         done += static_cast<std::size_t>(count);
     }
     return bytes;
+}
+
+ImportedMesh imported(PolygonMesh polygons, std::string format, std::optional<WeldReport> weld) {
+    ImportedMesh result;
+    result.polygons = std::move(polygons);
+    result.format = std::move(format);
+    result.weld = weld;
+    return result;
 }
 
 std::string ascii_lower(std::string_view text) {

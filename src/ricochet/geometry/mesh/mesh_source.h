@@ -1,7 +1,6 @@
 /// \file
 /// Common parts of the mesh readers: a file's bytes, a text cursor, limits, errors, and the reader functions of all
-/// formats. Private to the mesh readers. A reader of a format fills only the members of ImportedMesh that the file
-/// determines; read_mesh() adds the triangles.
+/// formats. Private to the mesh readers.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +15,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/core/vec3.h"
@@ -57,6 +55,9 @@ inline constexpr std::uint64_t kLargestIndexCount = std::numeric_limits<std::uin
 inline void close_face(PolygonMesh& mesh) {
     mesh.face_offsets.push_back(static_cast<std::uint32_t>(mesh.corners.size()));
 }
+
+/// Returns the result of a reader. read_mesh() adds the triangles.
+[[nodiscard]] ImportedMesh imported(PolygonMesh polygons, std::string format, std::optional<WeldReport> weld = {});
 
 /// Returns the little-endian value at an address, which need not be aligned.
 template <class Value>
@@ -187,19 +188,15 @@ private:
 /// Returns true if the text's first statement is one of the OBJ format.
 [[nodiscard]] bool looks_like_obj(const MeshSource& source);
 
-/// Reads OFF text with any of the prefixes ST, C and N. Every vertex and every face has its own line. Values after the
-/// coordinates and after a face's indices (colours, normals, texture) must be numbers and are not used. If this fails,
-/// the file is read as free-form text, in which line ends separate numbers like blanks. The text must then contain
-/// exactly as many numbers as its counts and prefixes require.
+/// Reads OFF text with one line for each vertex and each face. If this fails, reads it as free-form text, which must
+/// contain exactly as many numbers as its counts and prefixes require. Unused values must also be numbers.
 [[nodiscard]] ImportedMesh read_off(const MeshSource& source);
 
 /// Returns true if the text's first word is the keyword OFF with any of its prefixes.
 [[nodiscard]] bool looks_like_off(const MeshSource& source);
 
-/// Reads the elements vertex, face and tristrips, and skips all others. A vertex has x, y and z of any type. A face has
-/// a list vertex_indices or vertex_index. A strip has a list vertex_indices, in which -1 starts a new strip. In an
-/// ASCII file every element has its own line. Triangles of a strip that repeat a vertex only change the strip's
-/// direction and are not faces.
+/// Reads the elements vertex, face and tristrips, and skips all others. In an ASCII file every element has its own
+/// line. The index -1 starts a new strip. Triangles of a strip that repeat a vertex only change its direction.
 [[nodiscard]] ImportedMesh read_ply(const MeshSource& source);
 
 /// Returns true if the size matches the triangle count at byte 80, or exceeds it by one byte or by CR LF. The text of
@@ -209,17 +206,15 @@ private:
 /// Returns true if the text starts with the word "solid". Lines that begin with '#' may come before it.
 [[nodiscard]] bool starts_with_solid(const MeshSource& source);
 
-/// Reads STL and joins corners of equal coordinates. The facets' normals are not used. The name of a solid in an ASCII
-/// file becomes the group of its facets.
+/// Reads STL and joins corners of equal coordinates. The facets' normals are not used.
 [[nodiscard]] ImportedMesh read_stl(const MeshSource& source);
 
 /// Number of triangle corners that a glTF file of any size may show. Large files may show 16 corners per byte.
 inline constexpr std::size_t kFreeGltfCorners = 4'000'000;
 
-/// Reads glTF 2.0, as text or binary (GLB). The result has the triangles of the scene that the file shows, placed by
-/// its nodes, with z up. Corners of one mesh at one node are joined if their coordinates are equal. A face gets the
-/// name of its material, the mesh's name as its group, and the node's name as its object. `folder` contains the files
-/// of buffers. If `folder` is nullopt, such files are refused.
+/// Reads glTF 2.0. Corners of one mesh at one node are joined if their coordinates are equal. A face gets the name of
+/// its material, the mesh's name as its group, and the node's name as its object. `folder` contains the files of
+/// buffers; nullopt refuses them.
 [[nodiscard]] ImportedMesh read_gltf(const MeshSource& source, const std::optional<std::filesystem::path>& folder,
                                      std::size_t free_corners = kFreeGltfCorners);
 

@@ -143,6 +143,8 @@ private:
     TopologyReport report_;
 };
 
+std::size_t index_of(const OpenMesh::BaseHandle& handle) { return static_cast<std::size_t>(handle.idx()); }
+
 std::size_t count_unnamed(Corners corners, std::size_t vertex_count) {
     std::vector<char> named(vertex_count, 0);
     for (const std::uint32_t v : corners) named[v] = 1;
@@ -302,9 +304,9 @@ std::vector<std::uint32_t> MeshTopology::Impl::loop_from(OpenMesh::HalfedgeHandl
     bool is_real = false;
     OpenMesh::HalfedgeHandle halfedge = start;
     do {
-        visited[static_cast<std::size_t>(halfedge.idx())] = 1;
-        is_real = is_real || is_real_boundary[static_cast<std::size_t>(mesh.edge_handle(halfedge).idx())] != 0;
-        loop.push_back(vertex_of_fan[static_cast<std::size_t>(mesh.from_vertex_handle(halfedge).idx())]);
+        visited[index_of(halfedge)] = 1;
+        is_real = is_real || is_real_boundary[index_of(mesh.edge_handle(halfedge))] != 0;
+        loop.push_back(vertex_of_fan[index_of(mesh.from_vertex_handle(halfedge))]);
         halfedge = mesh.next_halfedge_handle(halfedge);
     } while (halfedge != start);
     if (!is_real) loop.clear();
@@ -316,7 +318,7 @@ std::uint32_t MeshTopology::Impl::vertex_across(OpenMesh::HalfedgeHandle halfedg
     const OpenMesh::HalfedgeHandle next = mesh.next_halfedge_handle(halfedge);
     const OpenMesh::HalfedgeHandle after = mesh.next_halfedge_handle(next);
     if (mesh.next_halfedge_handle(after) != halfedge) return kNoVertex;
-    return vertex_of_fan[static_cast<std::size_t>(mesh.to_vertex_handle(next).idx())];
+    return vertex_of_fan[index_of(mesh.to_vertex_handle(next))];
 }
 
 MeshTopology::MeshTopology(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {
@@ -353,17 +355,14 @@ std::vector<std::vector<std::uint32_t>> MeshTopology::boundary_loops() const {
 // neighbours.
 std::vector<MeshEdge> MeshTopology::edges() const {
     std::vector<MeshEdge> edges;
-    edges.reserve(impl_->mesh.n_edges());
-    for (std::size_t e = 0; e < impl_->mesh.n_edges(); ++e) {
-        const OpenMesh::HalfedgeHandle along =
-            impl_->mesh.halfedge_handle(OpenMesh::EdgeHandle(static_cast<int>(e)), 0);
-        const OpenMesh::HalfedgeHandle back = impl_->mesh.opposite_halfedge_handle(along);
-        const std::uint32_t from =
-            impl_->vertex_of_fan[static_cast<std::size_t>(impl_->mesh.from_vertex_handle(along).idx())];
-        const std::uint32_t to =
-            impl_->vertex_of_fan[static_cast<std::size_t>(impl_->mesh.to_vertex_handle(along).idx())];
-        edges.push_back(
-            {std::min(from, to), std::max(from, to), {impl_->vertex_across(along), impl_->vertex_across(back)}});
+    const OpenMesh::PolyConnectivity& mesh = impl_->mesh;
+    edges.reserve(mesh.n_edges());
+    for (std::size_t e = 0; e < mesh.n_edges(); ++e) {
+        const OpenMesh::HalfedgeHandle along = mesh.halfedge_handle(OpenMesh::EdgeHandle(static_cast<int>(e)), 0);
+        const OpenMesh::HalfedgeHandle back = mesh.opposite_halfedge_handle(along);
+        const auto [first, second] = std::minmax(impl_->vertex_of_fan[index_of(mesh.from_vertex_handle(along))],
+                                                 impl_->vertex_of_fan[index_of(mesh.to_vertex_handle(along))]);
+        edges.push_back({first, second, {impl_->vertex_across(along), impl_->vertex_across(back)}});
     }
     const auto key = [](const MeshEdge& edge) { return std::pair(edge.first, edge.second); };
     std::stable_sort(edges.begin(), edges.end(), [&](const MeshEdge& a, const MeshEdge& b) { return key(a) < key(b); });

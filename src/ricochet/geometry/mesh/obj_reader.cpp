@@ -58,7 +58,9 @@ public:
             cursor_.skip_statement();
         }
         if (forward_.index > static_cast<std::int64_t>(mesh_.vertices.size())) fail_past_end(forward_);
-        return {.polygons = std::move(mesh_), .format = "OBJ", .notes = notes()};
+        ImportedMesh result = imported(std::move(mesh_), "OBJ");
+        result.notes = notes();
+        return result;
     }
 
 private:

@@ -206,12 +206,12 @@ ImportedMesh read_off(const MeshSource& source) {
     refuse_binary(source);
     require_plain_text(source);
     try {
-        return {.polygons = OffReader(source, OffForm::lines).read(), .format = "OFF"};
+        return imported(OffReader(source, OffForm::lines).read(), "OFF");
     } catch (const InputError& by_lines) {
         // The error of the line form is reported, because that form is more common.
         const std::string reason = by_lines.what();
         try {
-            return {.polygons = OffReader(source, OffForm::free).read(), .format = "OFF"};
+            return imported(OffReader(source, OffForm::free).read(), "OFF");
         } catch (const InputError&) {
             throw InputError(reason);
         }

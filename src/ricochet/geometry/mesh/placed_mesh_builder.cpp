@@ -60,7 +60,9 @@ void PlacedMeshBuilder::end() { mesh_.vertices.insert(mesh_.vertices.end(), poin
 
 ImportedMesh PlacedMeshBuilder::finish(std::string format) {
     const WeldReport weld{mesh_.corners.size(), mesh_.vertices.size()};
-    return {.polygons = std::move(mesh_), .format = std::move(format), .weld = weld, .y_up = true};
+    ImportedMesh result = imported(std::move(mesh_), std::move(format), weld);
+    result.y_up = true;
+    return result;
 }
 
 }  // namespace ricochet

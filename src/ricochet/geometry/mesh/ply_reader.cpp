@@ -124,8 +124,8 @@ private:
     std::size_t last_ = 0;  // start of the last value, for messages
 };
 
-// Use of a property's values.
-enum class Use { kSkip, kX, kY, kZ, kFace, kStrip };
+// Use of a property's values. The first three are axes.
+enum class Use { kX, kY, kZ, kFace, kStrip, kSkip };
 
 std::size_t require_property(const MeshSource& source, const PlyElement& element, std::string_view name) {
     const std::optional<std::size_t> index = element.find(name);
@@ -200,13 +200,9 @@ private:
     void read_property(const PlyProperty& property, Use use, Vec3& point) {
         switch (use) {
             case Use::kX:
-                point.x = values_.coordinate(property.type);
-                break;
             case Use::kY:
-                point.y = values_.coordinate(property.type);
-                break;
             case Use::kZ:
-                point.z = values_.coordinate(property.type);
+                point[static_cast<int>(use)] = values_.coordinate(property.type);
                 break;
             case Use::kFace:
                 read_face(property);
@@ -289,7 +285,7 @@ private:
 
 template <typename ValueSource>
 ImportedMesh read_body(const MeshSource& source, const PlyHeader& header, std::uint64_t vertices, const char* format) {
-    return {.polygons = BodyReader<ValueSource>(source, header, vertices).read(header), .format = format};
+    return imported(BodyReader<ValueSource>(source, header, vertices).read(header), format);
 }
 
 ImportedMesh read_body_as(const MeshSource& source, const PlyHeader& header, std::uint64_t vertices) {

@@ -51,7 +51,7 @@ public:
     }
     ImportedMesh finish(std::string format) {
         const WeldReport weld{mesh_.corners.size(), mesh_.vertices.size()};
-        return {.polygons = std::move(mesh_), .format = std::move(format), .weld = weld};
+        return imported(std::move(mesh_), std::move(format), weld);
     }
 
 private:

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <span>
 #include <utility>
 
@@ -60,10 +59,6 @@ public:
 
     Triangulation run() {
         const std::size_t faces = mesh_.face_count();
-        if (holds_triangles_only()) {
-            copy_triangles();
-            return std::move(result_);
-        }
         result_.triangles.reserve(mesh_.corners.size() - std::min(mesh_.corners.size(), 2 * faces));
         result_.triangle_face.reserve(result_.triangles.capacity());
         for (std::size_t face = 0; face < faces; ++face) {
@@ -74,26 +69,6 @@ public:
     }
 
 private:
-    [[nodiscard]] bool holds_triangles_only() const {
-        const std::vector<std::uint32_t>& offsets = mesh_.face_offsets;
-        for (std::size_t i = 0; i < offsets.size(); ++i) {
-            if (offsets[i] != 3 * i) return false;
-        }
-        return mesh_.corners.size() == 3 * mesh_.face_count();
-    }
-
-    void copy_triangles() {
-        const std::vector<std::uint32_t>& corners = mesh_.corners;
-        result_.triangles.reserve(corners.size() / 3);
-        for (std::size_t i = 0; i < corners.size(); i += 3) {
-            const Triangle triangle{corners[i], corners[i + 1], corners[i + 2]};
-            if (has_repeats(triangle, distinct_)) ++result_.faces_with_repeated_corners;
-            result_.triangles.push_back(triangle);
-        }
-        result_.triangle_face.resize(result_.triangles.size());
-        std::iota(result_.triangle_face.begin(), result_.triangle_face.end(), std::uint32_t{0});
-    }
-
     void cut_face(std::size_t face) {
         const std::uint32_t first = mesh_.face_offsets[face];
         const Corners corners(mesh_.corners.data() + first, mesh_.face_offsets[face + 1] - first);

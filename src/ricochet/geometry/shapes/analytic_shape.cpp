@@ -109,11 +109,11 @@ AnalyticShape::AnalyticShape(const AffineMap& world_from_local, const LocalShape
 }
 
 AnalyticShape AnalyticShape::ball(const AffineMap& world_from_local) {
-    return {world_from_local, LocalShape::ball(column_lengths(world_from_local))};
+    return {world_from_local, LocalShape(column_lengths(world_from_local), false)};
 }
 
 AnalyticShape AnalyticShape::cylinder(const AffineMap& world_from_local) {
-    return {world_from_local, LocalShape::cylinder(column_lengths(world_from_local))};
+    return {world_from_local, LocalShape(column_lengths(world_from_local), true)};
 }
 
 template <class Scalar>

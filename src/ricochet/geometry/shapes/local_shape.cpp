@@ -31,9 +31,6 @@ Scalar crossing(const Scalar& before, const Scalar& after) {
 LocalShape::LocalShape(const std::array<double, 3>& half_axes, bool is_capped)
     : ellipsoid_(half_axes, is_capped ? 2 : 3), is_capped_(is_capped), half_height_(is_capped ? half_axes[2] : 0.0) {}
 
-LocalShape LocalShape::ball(const std::array<double, 3>& half_axes) { return {half_axes, false}; }
-LocalShape LocalShape::cylinder(const std::array<double, 3>& half_axes) { return {half_axes, true}; }
-
 template <class Scalar>
 int LocalShape::side_of_start(const LocalSegment<Scalar>& segment) const {
     const Vec3 y = rounded(segment.from);

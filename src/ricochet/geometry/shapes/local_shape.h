@@ -27,8 +27,8 @@ struct LocalSegment {
 /// An ellipsoid centred at the origin, or an elliptic cylinder around z between two caps.
 class LocalShape {
 public:
-    static LocalShape ball(const std::array<double, 3>& half_axes);
-    static LocalShape cylinder(const std::array<double, 3>& half_axes);
+    /// Makes a cylinder, or a ball if it is not capped. half_axes: in m.
+    LocalShape(const std::array<double, 3>& half_axes, bool is_capped);
 
     /// Returns +1 outside and -1 inside. Returns 0 if the segment's errors leave the side of `from` undecided.
     template <class Scalar>
@@ -60,8 +60,6 @@ public:
     }
 
 private:
-    LocalShape(const std::array<double, 3>& half_axes, bool is_capped);
-
     template <class Scalar>
     struct Interval {
         Scalar from{};

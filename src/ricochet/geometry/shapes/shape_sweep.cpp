@@ -109,13 +109,12 @@ std::optional<double> ConservativeAdvancement::time_to_plane(const Separation& s
         if (!(separation.rate < 0.0) || size > -separation.rate * left) return std::nullopt;
         return size / -separation.rate;
     }
-    Polynomial height;
-    height.degree = path_.degree;
-    height.duration = left;
-    height.coefficients[0] = DoubleDouble(size);
-    height.coefficients[1] = DoubleDouble(separation.rate);
-    height.coefficients[2] = DoubleDouble(side_ * 0.5 * dot(separation.normal, path_.acceleration(separation.time)));
-    height.coefficients[3] = DoubleDouble(side_ * dot(separation.normal, path_.jerk()) / 6.0);
+    const double square = side_ * 0.5 * dot(separation.normal, path_.acceleration(separation.time));
+    const double cube = side_ * dot(separation.normal, path_.jerk()) / 6.0;
+    const Polynomial height{
+        {DoubleDouble(size), DoubleDouble(separation.rate), DoubleDouble(square), DoubleDouble(cube)},
+        path_.degree,
+        left};
     const Times times = down_crossings(height, 0.0, left);
     return times.count > 0 ? std::optional(times[0]) : std::nullopt;
 }

@@ -95,12 +95,11 @@ public:
 
     [[nodiscard]] MovingContact contact_at(double time) const {
         const ClosestPointOnTriangle nearest = nearest_at(time);
-        const double distance = std::sqrt(nearest.distance_squared);
-        MovingContact contact;
-        contact.time = time;
-        contact.distance = std::max(0.0, distance - radius_);
-        contact.barycentric = barycentric_coordinates(nearest, triangle_.corners[0].at(time),
-                                                      triangle_.corners[1].at(time), triangle_.corners[2].at(time));
+        const auto& [a, b, c] = triangle_.corners;
+        MovingContact contact{time,
+                              std::max(0.0, std::sqrt(nearest.distance_squared) - radius_),
+                              barycentric_coordinates(nearest, a.at(time), b.at(time), c.at(time)),
+                              {}};
         contact.normal = contact_normal(contact, nearest.offset);
         return contact;
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {

@@ -84,7 +84,7 @@ CheckedDeformation::CheckedDeformation(std::uint32_t collider, VerifiedDeformati
     for (const std::vector<Vec3>& key : surface_.vertices) {
         boxes_.push_back(tree_.boxes([&](std::uint32_t k) {
             const auto [a, b, c] = surface_.triangles[order_[k]];
-            return box_around(key[a], key[b], key[c]);
+            return enclosing(key[a], key[b], key[c]);
         }));
     }
 }
@@ -146,7 +146,7 @@ Box3 CheckedDeformation::box_at(std::size_t node, const Moment& moment) const {
     const Box3& a = boxes_[moment.from][node];
     const Box3& b = boxes_[moment.to][node];
     const Box3 between{a.lower + moment.part * (b.lower - a.lower), a.upper + moment.part * (b.upper - a.upper)};
-    return grown(between, 0x1p-45 * largest_);
+    return widened(between, 0x1p-45 * largest_);
 }
 
 std::shared_ptr<const ParityOracle> CheckedDeformation::oracle_at(double time) const {
@@ -176,7 +176,7 @@ bool CheckedDeformation::is_on_surface(const Vec3& p, double time) const {
 
 void CheckedDeformation::find_crossings(const Segment& segment, bool is_late,
                                         std::vector<CheckedFrame::Crossing>& crossings) const {
-    const Box3 box = box_around(segment.from, segment.to);
+    const Box3 box = enclosing(segment.from, segment.to);
     const Span span{segment.begin, segment.end};
     const std::vector<Moment> moments = moments_of(span);
     const bool leads_over_key = !is_late && moments.size() > 2;
@@ -184,9 +184,9 @@ void CheckedDeformation::find_crossings(const Segment& segment, bool is_late,
         Box3 swept;
         for (const Moment& moment : moments) {
             const auto [a, b, c] = corners_at(triangle, moment);
-            swept.include(box_around(a, b, c));
+            swept.include(enclosing(a, b, c));
         }
-        if (!overlap(box, swept)) return;
+        if (!meet(box, swept)) return;
         const MovingCorners moving{corners_at(triangle, moments.front()), corners_at(triangle, moments.back())};
         if (!leads_over_key && are_apart({segment.from, segment.to}, moving)) return;
         crossings.push_back({segment.to, collider_, triangle});

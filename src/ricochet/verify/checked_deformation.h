@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "ricochet/core/box3.h"
-#include "ricochet/core/box_tools.h"
 #include "ricochet/core/segment.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/verify/boxes.h"
 #include "ricochet/verify/checked_frame.h"
 #include "ricochet/verify/item_tree.h"
 #include "ricochet/verify/parity.h"
@@ -46,7 +46,7 @@ public:
         const double least = radius - sphere_tolerance(radius, largest);
         if (!(least > 0.0)) return;
         const double padded = (1.0 + 0x1p-40) * least + 0x1p-40 * max_abs(p);
-        visit_near(ball_box(p, padded), {time, time}, [&](std::uint32_t triangle) {
+        visit_near(widened({p, p}, padded), {time, time}, [&](std::uint32_t triangle) {
             if (is_nearer(p, corners_at(triangle, moment_at(time)), least)) {
                 found(collider_, std::optional<std::uint32_t>(triangle));
             }
@@ -85,7 +85,7 @@ private:
         const auto meets = [&](std::uint32_t node) {
             Box3 swept;
             for (const Moment& moment : moments) swept.include(box_at(node, moment));
-            return overlap(box, swept);
+            return meet(box, swept);
         };
         tree_.visit(meets, [&](std::uint32_t k) { visit(order_[k]); });
     }

@@ -114,7 +114,7 @@ void CheckedFrame::find_crossings(const Segment& segment, bool starts_on_surface
 bool CheckedFrame::stays_away(const Segment& segment) const {
     constexpr int kMostParts = 256;
     if (!planes_.empty() || box_.empty()) return false;
-    const Box3 way = box_around(segment.from, segment.to);
+    const Box3 way = enclosing(segment.from, segment.to);
     const double reach = length(max(abs(box_.lower), abs(box_.upper)));
     const auto meets = [&](double from, double to) {
         const double middle = 0.5 * from + 0.5 * to;

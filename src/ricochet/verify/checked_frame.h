@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "ricochet/core/box3.h"
-#include "ricochet/core/box_tools.h"
 #include "ricochet/core/frame_tree.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/verify/boxes.h"
 #include "ricochet/verify/checked_shape.h"
 #include "ricochet/verify/parity.h"
 #include "ricochet/verify/triangle_tests.h"
@@ -75,7 +75,7 @@ public:
             if (shape.is_nearer(p, least)) found(collider, std::nullopt);
         }
         const double padded = (1.0 + 0x1p-40) * least + 0x1p-40 * max_abs(p);
-        triangles_.near_box(ball_box(p, padded), [&](const NamedTriangle& t) {
+        triangles_.near_box(widened({p, p}, padded), [&](const NamedTriangle& t) {
             if (is_nearer(p, t.corners, least)) found(t.collider, t.triangle);
         });
     }

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "ricochet/core/box_tools.h"
-
 namespace ricochet::verify {
 
 ItemTree::ItemTree(std::uint32_t count, std::uint32_t leaf_size, const std::function<Vec3(std::uint32_t)>& center_of)
@@ -20,7 +18,8 @@ void ItemTree::build(std::uint32_t begin, std::uint32_t end, std::uint32_t leaf_
     if (end - begin <= leaf_size) return;
     Box3 centers;
     for (std::uint32_t k = begin; k < end; ++k) centers.include(center_of(order_[k]));
-    const int axis = longest_axis(centers.size());
+    const Vec3 size = centers.size();
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
     const std::uint32_t middle = begin + (end - begin) / 2;
     std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                      [&](std::uint32_t a, std::uint32_t b) {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "ricochet/core/box_tools.h"
+#include "ricochet/verify/boxes.h"
 #include "ricochet/verify/item_tree.h"
 
 namespace ricochet {
@@ -25,11 +25,13 @@ void for_each_near_pair(std::span<const StandingSphere> spheres, const Visit& vi
     const verify::ItemTree tree(static_cast<std::uint32_t>(spheres.size()), kLeafSize,
                                 [&](std::uint32_t i) { return spheres[i].position; });
     const auto sphere_at = [&](std::uint32_t k) -> const StandingSphere& { return spheres[tree.order()[k]]; };
-    const auto box_of = [](const StandingSphere& sphere) { return ball_box(sphere.position, sphere.radius); };
+    const auto box_of = [](const StandingSphere& sphere) {
+        return verify::widened({sphere.position, sphere.position}, sphere.radius);
+    };
     const std::vector<Box3> boxes = tree.boxes([&](std::uint32_t k) { return box_of(sphere_at(k)); });
     for (const StandingSphere& a : spheres) {
         const Box3 box = box_of(a);
-        tree.visit([&](std::uint32_t node) { return overlap(boxes[node], box); },
+        tree.visit([&](std::uint32_t node) { return verify::meet(boxes[node], box); },
                    [&](std::uint32_t k) {
                        if (sphere_at(k).particle > a.particle) visit(a, sphere_at(k));
                    });

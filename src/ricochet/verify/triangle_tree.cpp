@@ -8,7 +8,7 @@ TriangleTree::TriangleTree(const std::vector<NamedTriangle>& triangles) {
     constexpr std::uint32_t kLeafSize = 4;
     std::vector<Box3> boxes;
     for (const NamedTriangle& t : triangles) {
-        boxes.push_back(box_around(t.corners.a, t.corners.b, t.corners.c));
+        boxes.push_back(enclosing(t.corners.a, t.corners.b, t.corners.c));
         largest_ = std::max({largest_, max_abs(boxes.back().lower), max_abs(boxes.back().upper)});
     }
     tree_ = ItemTree(static_cast<std::uint32_t>(boxes.size()), kLeafSize,

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "ricochet/core/box3.h"
-#include "ricochet/core/box_tools.h"
 #include "ricochet/core/vec3.h"
+#include "ricochet/verify/boxes.h"
 #include "ricochet/verify/item_tree.h"
 #include "ricochet/verify/triangle_tests.h"
 
@@ -36,7 +36,7 @@ public:
     /// Calls visit(triangle) for every triangle whose box touches `box`.
     template <class Visit>
     void near_box(const Box3& box, const Visit& visit) const {
-        visit_near([&](const Box3& other) { return overlap(box, other); }, visit);
+        visit_near([&](const Box3& other) { return meet(box, other); }, visit);
     }
 
 private:
@@ -45,12 +45,12 @@ private:
     class SegmentTest {
     public:
         SegmentTest(const Vec3& p, const Vec3& q, double largest)
-            : box_(box_around(p, q)), start_(p), step_(q - p), size_(abs(step_)) {
+            : box_(enclosing(p, q)), start_(p), step_(q - p), size_(abs(step_)) {
             // Each product below has about 5 roundings of 2^-53, relative to coordinates of this size.
             slack_ = 0x1p-48 * std::fmax(largest, std::fmax(max_abs(p), max_abs(q)));
         }
         bool operator()(const Box3& box) const {
-            if (!overlap(box_, box)) return false;
+            if (!meet(box_, box)) return false;
             const Vec3 half = 0.5 * (box.upper - box.lower);
             // A segment that is short compared with the box seldom misses the box, so the exact test would not pay off.
             if (max_abs(size_) < max_abs(half)) return true;

@@ -16,8 +16,7 @@
 namespace ricochet {
 namespace {
 
-/// Returns true if energies include particle i. A particle with a non-finite state is treated as frozen, because the
-/// next step will freeze it.
+/// Returns true if energies include particle i. The next step will freeze a particle with a non-finite state.
 bool has_energy(const Particles& p, std::size_t i) {
     return p.frozen[i] == 0 && is_finite(p.position[i]) && is_finite(p.velocity[i]);
 }
@@ -110,9 +109,8 @@ TriangleTotals Simulation::triangle_totals(std::size_t i) const {
     TriangleTotals result;
     const SurfaceTotals& totals = impl().recorder.totals();
     if (totals.empty()) return result;
-    // The weights of sleeping particles are added to the totals only during this call. They are removed exactly at the
-    // end.
-    impl().mover.sleepers().add_weights(time(), 1.0);
+    // The weights of sleeping particles are in the totals only during this call, and are removed exactly at the end.
+    impl().mover.add_weights(time(), 1.0);
     const ColliderList& list = impl().scene.list();
     for (SurfaceId surface = list.first_surface_of(i); surface < list.first_surface_of(i + 1); ++surface) {
         // All surfaces of one shape share one entry.
@@ -124,7 +122,7 @@ TriangleTotals Simulation::triangle_totals(std::size_t i) const {
         result.impulse[at] += totals.impulse(surface);
         result.lasting_impulse[at] += totals.lasting_impulse(surface);
     }
-    impl().mover.sleepers().add_weights(time(), -1.0);
+    impl().mover.add_weights(time(), -1.0);
     return result;
 }
 

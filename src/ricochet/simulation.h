@@ -46,8 +46,8 @@ struct SimulationSetup {
     /// Materials, to which colliders refer by index; at least one if there are colliders.
     std::vector<Material> materials;
     std::vector<ColliderDescription> colliders;
-    /// Frames of the colliders (ColliderDescription::frame), or null if no collider has a frame. Only the exact
-    /// response supports moving colliders.
+    /// Frames of the colliders (ColliderDescription::frame), or null. Only the exact response supports moving
+    /// colliders.
     std::shared_ptr<const FrameTree> frames = {};
     /// Dynamic bodies, one for each driven frame. Impulses of particles move them.
     std::vector<BodyDescription> bodies = {};
@@ -59,8 +59,7 @@ struct SimulationSetup {
     /// Forces between particles, which are added. They act on particles born within a step from the next step on.
     std::vector<ParticlesForceEntry> particles_forces = {};
     /// Custom solver for all particles together. It replaces options.integrator, which then applies only after a
-    /// bounce. Within a step, each path is the cubic Hermite polynomial through the particle's states at both ends of
-    /// the step.
+    /// bounce. Within a step, each path is the cubic Hermite polynomial through the states at both ends of the step.
     SystemSolver solver = {};
     std::optional<Box3> bounds;                    ///< particles outside are removed
     std::vector<AttributeDescription> attributes;  ///< user-defined attributes of particles, and attributes for display
@@ -68,8 +67,7 @@ struct SimulationSetup {
     /// Processes that change the attribute `temperature`. Nothing: the attribute is constant.
     std::optional<HeatSettings> heat = std::nullopt;
     std::vector<CounterDescription> counters = {};  ///< disks that count the particles passing through them
-    /// Processes that share the particles of the run. Each of them has the same setup. Null: a single process has all
-    /// particles. See show_whole().
+    /// Processes that share the particles of the run, each with the same setup. Null: one process. See show_whole().
     std::shared_ptr<Ranks> ranks = {};
 };
 
@@ -77,8 +75,7 @@ struct SimulationSetup {
 struct TriangleTotals {
     std::vector<std::uint64_t> hits;  ///< number of impacts on each triangle
     std::vector<Vec3> impulse;        ///< sum of the particles' impulses on each triangle, in N s
-    /// Part of `impulse` that lasting contacts caused, in N s. These are sliding, the weight of resting particles, and
-    /// time-stepped contact islands.
+    /// Part of `impulse` that lasting contacts caused, in N s: sliding, weights at rest, time-stepped contact islands.
     std::vector<Vec3> lasting_impulse = {};
 };
 
@@ -107,8 +104,7 @@ struct BodyState {
 
 class CollisionWorld;
 
-/// Data that Simulation::show_whole() makes available. Each value includes the data of the values above it, except as
-/// stated.
+/// Data that Simulation::show_whole() makes available. Each value includes the data above it, except as stated.
 enum class Shown {
     contacts,           ///< contact_records()
     counts,             ///< also statistics() and collider_totals()
@@ -144,8 +140,7 @@ public:
 /// moved-from simulation can only be assigned to or destroyed. All other calls throw RunError.
 class Simulation {
 public:
-    /// Builds the simulation. Throws InputError if the setup is invalid, for example because of a degenerate placement
-    /// or too large an extent.
+    /// Builds the simulation. Throws InputError if the setup is invalid, for example by a degenerate placement.
     explicit Simulation(SimulationSetup setup);
     ~Simulation();
     Simulation(Simulation&&) noexcept;
@@ -160,8 +155,7 @@ public:
     /// an error, particles are in the middle of a step, and further calls throw RunError.
     void step();
     /// Advances by `count` steps. Ends earlier if finished() becomes true or go_on returns false. The result has the
-    /// same bits as calls of step(). This function is faster than step(), because all steps of a free flight are
-    /// integrated together.
+    /// same bits as calls of step(). It is faster, because all steps of a free flight are integrated together.
     ///
     /// `go_on` is called after each step. During this call, positions and velocities of particles may still belong to
     /// an earlier step. The same is true for data derived from them (energies, hash, frames, save()). All other data
@@ -170,8 +164,8 @@ public:
     /// `goes_on_within` is also called within steps, by any thread and by several threads at the same time. If it
     /// returns false, the step is abandoned and StoppedError is thrown. The simulation is then exactly in the state
     /// after the last whole step, and can continue. For this purpose, states are saved from time to time, and the steps
-    /// since the last saved state are repeated. If no step had to be repeated, contact_records(), pair_records() and
-    /// birth_records() are empty.
+    /// since then are repeated. If no step was repeated, contact_records(), pair_records() and birth_records() are
+    /// empty.
     ///
     /// In these cases the step is completed instead:
     /// - Repeating the steps would take more than half a second.
@@ -197,8 +191,7 @@ public:
     /// Forces, and the settings of emitters and springs, are not compared. The simulation cannot be used after an
     /// error.
     ///
-    /// Violations that options.verify found before this call are no longer available. Particles are verified from their
-    /// restored positions on.
+    /// Violations that options.verify found before are no longer available. Particles are verified from then on.
     void restore(const ByteSource& source);
 
     /// Calls `show` on the first rank. During this call, the simulation of this rank has the data of all ranks.
@@ -216,12 +209,11 @@ public:
     /// must call this function once for the data of each saved rank. A rank keeps only the particles that belong to it.
     /// The number of ranks may differ from that of the saved run. Throws like restore().
     void restore_particles(const ByteSource& source);
-    /// Returns the load balance after the last step. The result is the same on all ranks. If no ranks share the run,
-    /// nothing is counted.
+    /// Returns the load balance after the last step, the same on all ranks. Without ranks, nothing is counted.
     [[nodiscard]] RankBalance rank_balance() const;
-    /// Shares the memory of meshes between the ranks of one machine, if the system allows it. Calls
-    /// Ranks::have_in_common(), which may throw. All ranks must have constructed their simulations. Has no effect if no
-    /// ranks share the run.
+    /// Shares the memory of meshes between the ranks of one machine, if the system allows it, by
+    /// Ranks::have_in_common(), which may throw. All ranks must have constructed their simulations. Has no effect
+    /// without ranks.
     void have_meshes_in_common();
     /// Returns the size of the meshes, in bytes, that this rank shares with other ranks of its machine.
     [[nodiscard]] std::uint64_t common_memory_bytes() const;
@@ -241,9 +233,8 @@ public:
     bool remove_particle(std::uint64_t id);
     /// Removes particles. Returns the number of ids that belonged to living particles.
     std::size_t remove_particles(std::span<const std::uint64_t> ids);
-    /// Returns the arrays of the particles, with the same memory to which particles() referred. This keeps the memory
-    /// valid for callers that have passed on references to it. The simulation continues with copies of the arrays, with
-    /// the same bits. Must not be called during a step.
+    /// Returns the arrays of the particles, in the memory to which particles() referred, so that references remain
+    /// valid. The simulation continues with copies of the arrays, with the same bits. Must not be called during a step.
     [[nodiscard]] Particles release_particles();
     /// Replaces all forces from the next step on, and wakes all sleeping particles. Forces are not part of a saved
     /// state, so they must be set again after restore(). Throws InputError for a null pointer. Also throws InputError
@@ -260,11 +251,10 @@ public:
 
     [[nodiscard]] const SimulationOptions& options() const;
     [[nodiscard]] const Particles& particles() const;
-    /// Returns the attributes of the particles for display. They are multiplied by the factors of the emitters' curves
-    /// over life.
+    /// Returns the attributes of the particles for display, multiplied by the factors of the emitters' curves over
+    /// life.
     [[nodiscard]] AttributeTable shown_attributes() const;
-    /// Returns, for each particle, the id of the parent that it follows (CloudRule), or -1 if it follows no parent.
-    /// Returns nothing if the setup has no clouds.
+    /// Returns, for each particle, the id of the parent that it follows (CloudRule), or -1; nothing without clouds.
     [[nodiscard]] std::optional<std::vector<std::int64_t>> cloud_parents() const;
     /// Returns the springs of the setup, bound to the order of particles().
     [[nodiscard]] const SpringNetwork& springs() const;
@@ -278,8 +268,7 @@ public:
     /// frame. Returns nothing for planes. A deforming mesh has its shape at time(). Balls and cylinders have no
     /// triangles, so a fine mesh represents them.
     [[nodiscard]] std::optional<TriangleMesh> collider_mesh(std::size_t i) const;
-    /// Returns the position and motion of collider i's frame at a time, in s. Colliders at rest have the frame of the
-    /// world.
+    /// Returns the position and motion of collider i's frame at a time, in s; the world's for colliders at rest.
     [[nodiscard]] MovingPose collider_pose(std::size_t i, double time) const;
     /// Returns the totals of collider i, with one entry per triangle. Planes, balls and cylinders have a single entry.
     /// The totals are empty unless options.triangle_totals is set.
@@ -314,12 +303,10 @@ public:
     [[nodiscard]] SurfacePosition contact_point(const ContactRecord& record) const;
     [[nodiscard]] SurfaceName surface_name(SurfaceId surface) const;
 
-    /// Returns true if a particle has a radius above 0, or if an emitter may create such a particle. The value does not
-    /// change during the run.
+    /// Returns true if a particle of the setup or of its emitters may have a radius above 0. Constant during the run.
     [[nodiscard]] bool has_spheres() const;
 
-    /// Returns warnings about settings, one sentence each. An example is a penalty sub-step that exceeds the stability
-    /// bound.
+    /// Returns warnings about settings, one sentence each, such as an unstable penalty sub-step.
     [[nodiscard]] const std::vector<std::string>& warnings() const;
 
     /// Returns the first kMostViolations violations that options.verify has found, in the order of steps and particles.
@@ -334,8 +321,8 @@ public:
     /// Return an energy of all particles except frozen ones. The motion of frozen particles is unknown.
     [[nodiscard]] double kinetic_energy() const;                   ///< in J
     [[nodiscard]] std::optional<double> potential_energy() const;  ///< in J; nothing if any force has no potential
-    /// Returns a hash (FNV-1a) over id, position and velocity of the particles in id order, and over the motion of the
-    /// bodies. Equal bits give equal hashes.
+    /// Returns a hash (FNV-1a) over id, position and velocity of the particles in id order, and the motion of the
+    /// bodies.
     [[nodiscard]] std::uint64_t state_hash() const;
 
 private:

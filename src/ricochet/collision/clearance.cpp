@@ -14,12 +14,10 @@ namespace {
 /// because every displacement is certified before use.
 constexpr std::size_t kMostSurfaces = 24;
 
-/// Largest number of rounds. A displacement can bring other surfaces near, which the next round includes. Local: a
-/// limit of this search, whose result is checked.
+/// Largest number of rounds, each of which includes surfaces that the last displacement brought near. Local, as above.
 constexpr int kMostRounds = 8;
 
-/// Fraction of the clearance by which a displacement may fall short because of rounding. Local, because the
-/// displacement is certified before use.
+/// Part of the clearance by which a displacement may fall short because of rounding. Local, as above.
 constexpr double kClearEnough = 0x1p-20;
 
 /// Smallest squared determinant of three normals, or squared sine of the angle between two, for which they count as

@@ -26,11 +26,9 @@ struct MeshShape {
     std::shared_ptr<const TriangleMesh> mesh;
     Placement placement;
     std::string file;  ///< source file, for messages and reports; may be empty
-    /// Material of every triangle, as indices into the simulation's materials. If empty, all triangles have the
-    /// collider's material.
+    /// Material of every triangle, as indices into the simulation's materials; empty: all have the collider's material.
     std::vector<std::uint32_t> triangle_materials = {};
-    /// Positions of a deforming mesh's vertices over time, before the placement; null for a rigid mesh. The vertices of
-    /// `mesh` are ignored if this is set.
+    /// Positions of a deforming mesh's vertices over time, before the placement, instead of `mesh`'s; null if rigid.
     std::shared_ptr<const MeshMotion> motion = nullptr;
 };
 
@@ -84,8 +82,7 @@ struct ColliderDescription {
     std::string name;
     ColliderShape shape;
     std::uint32_t material = 0;  ///< index into the simulation's materials
-    /// Name of the frame that the collider moves with. Its placement is relative to that frame. If empty, the collider
-    /// is at rest in the world.
+    /// Frame that the collider moves with, and to which its placement is relative. Empty: it is at rest in the world.
     std::string frame = {};
 };
 

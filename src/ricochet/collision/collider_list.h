@@ -14,7 +14,7 @@ namespace ricochet {
 /// All colliders of a scene, in all frames, and the numbers of their surfaces.
 class ColliderList {
 public:
-    /// Throws InputError with the name of the collider if a mesh has no triangles, or has materials for only some of
+    /// Throws InputError with the collider's name for a mesh without triangles, or with materials for only some of
     /// them.
     explicit ColliderList(std::vector<ColliderDescription> colliders);
 
@@ -30,8 +30,7 @@ public:
     [[nodiscard]] std::uint32_t material_of(SurfaceId surface) const;
     /// Releases the mesh of a collider after a collision world has made its own copy.
     void drop_mesh(std::size_t collider);
-    /// Replaces the motion of a deforming mesh by the given motion, to which the placement has been applied. Releases
-    /// the collider's mesh.
+    /// Replaces the motion of a deforming mesh by the motion after its placement. Releases the collider's mesh.
     void replace_motion(std::size_t collider, std::shared_ptr<const MeshMotion> motion);
     /// Returns the memory of the list, in bytes, without the meshes.
     [[nodiscard]] std::size_t memory_bytes() const;

@@ -32,8 +32,7 @@ double mean_box(const PlacedColliders& world) {
 }
 
 /// Returns true if p is above the triangle's face and the distances from its rim and its face differ by rounding only.
-/// A sphere that rolls over a rim then changes from face to rim exactly at the rim. Otherwise it would change too
-/// early, by 1e-8 of its radius.
+/// A rolling sphere then changes from face to rim exactly at the rim, and not too early by 1e-8 of its radius.
 bool is_over_rim(const TrianglePlane& triangle, const Vec3& p, double distance_from_rim) {
     const double height = std::fabs(triangle.signed_distance(p));
     if (height < (1.0 - kRimTie) * distance_from_rim || height == 0.0) return false;
@@ -67,8 +66,7 @@ CollisionWorld::CollisionWorld(std::shared_ptr<ColliderList> colliders, std::str
     unit_normals_ = unit_normals_of(*this);
 }
 
-// Boxes of a class are enlarged by its largest radius and the chord margin. Radii up to half the chord margin share the
-// class of points.
+// Boxes of a class are enlarged by its largest radius and the chord margin. Small radii share the class of points.
 double CollisionWorld::largest_radius_of_class(double radius) const {
     if (radius <= 0.5 * chord_margin_) return 0.5 * chord_margin_;
     const int exponent = std::ilogb(radius);
@@ -156,8 +154,8 @@ double CollisionWorld::signed_distance_from(SurfaceId surface, const Vec3& p) co
 }
 
 double CollisionWorld::size_of(SurfaceId surface) const {
-    // The diagonal of a ball's box is 3.5 of its radii. A long cylinder has the same curvature as a short one. Local: a
-    // scale, not a tolerance.
+    // The diagonal of a ball's box is 3.5 radii. A long cylinder is curved like a short one. Local: a scale, no
+    // tolerance.
     constexpr double kMostRadii = 4.0;
     const Range& range = range_of(surface);
     if (range.kind != Kind::shape) return bounds().diagonal();

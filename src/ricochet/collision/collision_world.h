@@ -16,8 +16,8 @@
 namespace ricochet {
 
 /// The colliders of one frame, at rest in its coordinates, and queries of their surfaces. Immutable after construction,
-/// except for prepare_radius() and set_culling(). Queries are safe from any number of threads. Functions that take a
-/// surface accept only surfaces of this frame.
+/// except for prepare_radius() and set_culling(). Queries are safe from any number of threads, for surfaces of this
+/// frame.
 class CollisionWorld : public PlacedColliders {
 public:
     /// Also builds the broad phase. It divides a path whose distance from its chord exceeds `chord_margin`. The unit of
@@ -50,12 +50,10 @@ public:
     /// Returns the unit normal of a surface at p, which may lie beyond its rim. The normal is the plane's own, the
     /// triangle's by the counter-clockwise rule, or the outward normal of a shape's part.
     [[nodiscard]] Vec3 unit_normal_of(SurfaceId surface, const Vec3& p) const;
-    /// Returns the signed distance, in m, from a plane, a triangle's plane or a shape's part extended beyond its rim.
-    /// It is also accurate next to the surface.
+    /// Returns the signed distance, in m, from a plane, or from a triangle or shape part extended beyond its rim.
     [[nodiscard]] double signed_distance_from(SurfaceId surface, const Vec3& p) const;
-    /// Returns the size, in m, of the collider that a surface belongs to. For shapes with a formula it is the diagonal
-    /// of the box, but at most four of the smallest radii. For planes and triangles it is the diagonal of the box of
-    /// all colliders.
+    /// Returns the size, in m, of a surface's collider: for shapes with a formula the diagonal of the box, but at most
+    /// four of the smallest radii; for planes and triangles the diagonal of the box of all colliders.
     [[nodiscard]] double size_of(SurfaceId surface) const;
     /// Returns true for planes, triangles and the caps of cylinders.
     [[nodiscard]] bool is_flat(SurfaceId surface) const {
@@ -64,11 +62,9 @@ public:
     }
     /// Returns true for the parts of balls and cylinders.
     [[nodiscard]] bool is_shape(SurfaceId surface) const { return range_of(surface).kind == Kind::shape; }
-    /// Returns the rim of a cylinder that is nearest to p: 1 at the bottom, 2 at the top. The surface must be a part of
-    /// a cylinder.
+    /// Returns the rim of a cylinder, given by one of its parts, that is nearest to p: 1 at the bottom, 2 at the top.
     [[nodiscard]] int rim_of(SurfaceId surface, const Vec3& p) const;
-    /// Returns the exact side of a surface that p is on: +1 in front of it, where its normal points, -1 behind it, 0 in
-    /// its plane.
+    /// Returns the exact side of a surface: +1 if p is in front, where its normal points, -1 behind it, 0 in its plane.
     [[nodiscard]] int side_of_surface(SurfaceId surface, const Vec3& p) const;
     /// Returns the time, in s, for which a path along a surface stays over it, see triangle_exit_time(). It is the
     /// whole duration for a plane and for a shape's side.
@@ -91,8 +87,7 @@ public:
     [[nodiscard]] bool culls() const { return culls_; }
     /// Returns the field of lower bounds of the distance to the triangles.
     [[nodiscard]] const DistanceField& distance_field() const { return distance_field_; }
-    /// Returns the memory of the world, in bytes, without the meshes that the colliders were made from. The result
-    /// includes memory that Embree allocates itself.
+    /// Returns the memory of the world, in bytes, with Embree's own, and without the meshes that it was made from.
     [[nodiscard]] std::size_t memory_bytes() const;
     /// Appends the memory pages of the large arrays, which no longer change.
     void add_pages_to(std::vector<std::span<const std::byte>>& pages) const;

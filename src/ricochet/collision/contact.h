@@ -26,8 +26,7 @@ struct ContactSurface {
     bool is_support = false;
 };
 
-/// The first contact of a path: all surfaces that it reaches at the same time (kSimultaneousUlps), in ascending order
-/// of their numbers.
+/// The first contact of a path: all surfaces that it reaches at once (kSimultaneousUlps), ascending by number.
 struct Contact {
     static constexpr int kMostSurfaces = 8;
 
@@ -46,8 +45,7 @@ struct Contact {
 /// direction opposite to v. `normal` is the surface's unit normal at p.
 [[nodiscard]] Vec3 facing_normal(const Vec3& normal, int side, const Vec3& v);
 
-/// Removes the seams of flat surfaces from a list: edges and vertices beside a face of the same normal. Changes the
-/// order.
+/// Removes edges and vertices beside a face of the same normal, which are seams of flat surfaces. Changes the order.
 template <class Surface>
 void drop_seams(std::vector<Surface>& list) {
     const auto faces_end = std::partition(list.begin(), list.end(), [](const Surface& one) { return one.flat; });

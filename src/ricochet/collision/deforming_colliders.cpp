@@ -67,8 +67,7 @@ bool DeformingColliders::is_segment_free(const StoredPosition& from, const Store
     return std::all_of(all.begin(), all.end(), [&](SurfaceId surface) {
         const DeformingMesh& mesh = mesh_with(surface);
         if (radius == 0.0) return mesh.is_free(surface, from, to, 0.0);
-        // The ends must keep a larger distance than the certificate requires, because losses of distance in successive
-        // segments add up.
+        // The ends must keep more distance than the certificate requires, because losses in successive segments add up.
         const double distance = mesh.triangle_at(surface, from.time).nearest(from.position).distance;
         const double least = distance >= radius - tolerance
                                  ? std::min(radius - kUsedSphereTolerance * tolerance, kNearerStill * distance)

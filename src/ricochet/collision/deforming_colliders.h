@@ -40,15 +40,13 @@ public:
     /// Returns the largest contact offset of the meshes that may come into the box, in m, or 0 if all stay out.
     [[nodiscard]] double offset_in(const Box3& box) const;
 
-    /// Returns true if a space-time segment stays clear of all triangles. A sphere that starts nearer to a triangle
-    /// than its radius must not come nearer.
+    /// Returns true if a space-time segment stays clear of all triangles. A sphere in overlap must not come nearer.
     [[nodiscard]] bool is_segment_free(const StoredPosition& from, const StoredPosition& to, double radius) const;
     /// Does the same for a particle whose time has stalled since an earlier step. The segment may then contain key
     /// times. Each corner is assumed to move straight from its position at the first time to that at the second. Only
     /// the centre of a sphere is certified. At the end the sphere must not overlap any surface more than at the start.
     [[nodiscard]] bool is_late_segment_free(const StoredPosition& from, const StoredPosition& to, double radius) const;
-    /// Appends the triangles nearest to a position at a time, in s, which may be outside the step. It appends at most
-    /// `most`, the nearest first.
+    /// Appends the triangles nearest to a position at a time, in s, inside or outside the step; at most `most`.
     void nearest_to(const Vec3& p, double time, std::size_t most, std::vector<SurfaceId>& out) const;
 
 private:

@@ -18,8 +18,7 @@ namespace {
 
 constexpr std::size_t kVerticesInBlock = 1 << 14;
 
-/// Margin of boxes, relative to the coordinates: more than the rounding of a vertex between two keys. Local: it only
-/// has to be large enough.
+/// Margin of boxes, relative to the coordinates, above the rounding of a vertex. Local: it only has to be large enough.
 constexpr double kBoxRounding = 0x1p-48;
 
 }  // namespace
@@ -106,8 +105,7 @@ TriangleMesh DeformingMesh::mesh_at(double time) const {
     return result;
 }
 
-/// Computes the boxes of the triangles for the step. Between keys vertices move on straight lines, so their positions
-/// at both ends and at keys bound the motion.
+/// Computes the boxes of the triangles for the step, from the vertices' positions at both ends and at keys.
 void DeformingMesh::begin_step(double begin, double end, std::vector<Box3>& boxes) {
     begin_ = begin;
     end_ = end;

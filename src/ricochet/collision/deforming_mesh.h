@@ -1,9 +1,8 @@
 /// \file
 /// A collider whose vertices move on straight lines between keys, and its triangles at single times.
 ///
-/// Such a mesh has no frame in which it is at rest. Segments are therefore certified in space and time. Between two
-/// stored positions, the particle and all vertices move on straight lines (MeshMoment::position()). No key of the mesh
-/// lies between the two times.
+/// Such a mesh is at rest in no frame, so segments are certified in space and time. Between two stored positions, the
+/// particle and all vertices move on straight lines (MeshMoment::position()), and no key of the mesh lies in between.
 #pragma once
 
 #include <array>
@@ -59,13 +58,11 @@ public:
 
     /// Begins a step over [begin, end], in s. "The step" below is this one. `boxes` is scratch memory.
     void begin_step(double begin, double end, std::vector<Box3>& boxes);
-    /// Returns the contact offset on the mesh, in m. It follows from the largest coordinate of the vertices in the
-    /// step.
+    /// Returns the contact offset on the mesh, in m, for the largest coordinate of the vertices in the step.
     [[nodiscard]] double offset() const { return offset_; }
     /// Returns a tree of boxes, one per solid triangle, that contain the triangles during the step.
     [[nodiscard]] const BoxTree& tree() const { return tree_; }
-    /// Returns the number of triangles with three different vertices. Other triangles never have an area, and
-    /// collisions ignore them.
+    /// Returns the number of triangles with three different vertices. Collisions ignore others, which have no area.
     [[nodiscard]] std::size_t solid_count() const { return solid_.size(); }
     [[nodiscard]] SurfaceId solid_surface(std::size_t k) const { return first_surface_ + solid_[k]; }
 
@@ -76,8 +73,7 @@ public:
     [[nodiscard]] MovingTriangle between(SurfaceId surface, double begin, double end) const;
     /// Returns the velocities of the corners, in m/s.
     [[nodiscard]] std::array<Vec3, 3> corner_velocities(SurfaceId surface, double time) const;
-    /// Motion of a triangle and of its point nearest to a position. At a key time, up to rounding, it is the motion
-    /// after the key.
+    /// Motion of a triangle and of its point nearest to a position; at a key time, up to rounding, after the key.
     struct Motion {
         Vec3 velocity;  ///< velocity of that point, in m/s
         Vec3 turning;   ///< angular velocity of the triangle, in rad/s, including rotation about its normal

@@ -39,8 +39,7 @@ bool DeformingSweep::is_supported(SurfaceId surface) const {
 
 bool DeformingSweep::comes_near(const MovingTriangle& triangle) const { return overlap(box_of(triangle), box_); }
 
-/// Returns the radius with which segments are certified. Supporting surfaces, and surfaces overlapped from the start,
-/// block only segments that intersect them.
+/// Returns the radius with which segments are certified. Supports and overlapped surfaces block only intersections.
 double DeformingSweep::certified_radius(SurfaceId surface, const MovingTriangle& triangle) const {
     if (radius_ == 0.0 || is_supported(surface)) return 0.0;
     const double distance = distance_at_start(path_, triangle);
@@ -56,8 +55,7 @@ std::optional<DeformingSweep::Hit> DeformingSweep::hit_at(SurfaceId surface, con
     const Vec3 p = path_.position(time);
     const ClosestPointOnTriangle closest = closest_point_on_triangle(p, a, b, c);
     const Vec3 weights = barycentric_coordinates(closest, a, b, c);
-    // The corner velocities come from the keys, because differences over a short piece of the path consist mostly of
-    // rounding errors.
+    // Takes the corner velocities from the keys, because differences over a short piece are mostly rounding errors.
     const double middle = 0.5 * times_.begin + 0.5 * times_.end;
     const auto [u, v, w] = deforming_.mesh_with(surface).corner_velocities(surface, middle);
     const Vec3 relative = path_.velocity(time) - (weights.x * u + weights.y * v + weights.z * w);
@@ -79,8 +77,7 @@ std::optional<DeformingSweep::Hit> DeformingSweep::meet(SurfaceId surface, const
     double from = 0.0;
     const double distance = distance_at_start(path_, triangle);
     if (radius == 0.0) {
-        // A point that leaves the triangle must not be hit again at once, so the sweep skips a short time. The
-        // certificate finds hits within this time.
+        // A point that leaves the triangle must not be hit again at once, except by the certificate.
         const bool touches = distance <= kTouchingOffsets * deforming_.mesh_with(surface).offset();
         if (touches && !hit_at(surface, triangle, {0.0, deformed_at(triangle, 0.0).side_of(path_.c[0])}))
             from = kShortLeave;
@@ -97,8 +94,7 @@ std::optional<DeformingSweep::Hit> DeformingSweep::meet(SurfaceId surface, const
     return hit;
 }
 
-/// Returns all hits at the earliest time. Hits with equal normals count once, including those of an edge beside its
-/// face.
+/// Returns all hits at the earliest time. Hits with equal normals count once, as do a face and its own edge.
 std::optional<Contact> DeformingSweep::first_of(std::vector<Hit> hits) const {
     if (hits.empty()) return std::nullopt;
     const auto earlier = [](const Hit& a, const Hit& b) {

@@ -27,8 +27,7 @@ public:
     DeformingSweep(const DeformingColliders& deforming, const Path& path, const PathTimes& times, double radius,
                    std::span<const SurfaceId> supports, double beside);
 
-    /// Returns the first contact with any of the triangles. Its time is in s along the path. Calls near(triangle) for
-    /// each triangle near the path, in the given order.
+    /// Returns the first contact with any triangle, in s along the path. Calls near(triangle) for each one near it.
     template <class Near>
     [[nodiscard]] std::optional<Contact> first_contact(std::span<const SurfaceId> triangles, const Near& near) const {
         std::vector<Hit> hits;

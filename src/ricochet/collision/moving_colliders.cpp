@@ -61,6 +61,13 @@ Box3 grown_with_rounding(const Box3& box, double by) {
 
 }  // namespace
 
+bool has_jump(const MovingPose& before, const MovingPose& after) {
+    const auto differ = [](const Vec3& a, const Vec3& b) {
+        return length(a - b) > kSameVelocity * (length(a) + length(b));
+    };
+    return differ(before.velocity, after.velocity) || differ(before.angular_velocity, after.angular_velocity);
+}
+
 Box3 swept_box(const FrameTree& frames, std::size_t frame, const Box3& box, double begin, double end) {
     const double reach = length(max(abs(box.lower), abs(box.upper)));
     Box3 all;
@@ -201,17 +208,10 @@ double MovingColliders::next_key(BodyId body, double time) const {
 }
 
 std::optional<double> MovingColliders::next_jump(BodyId body, double from, double until) const {
-    const auto differs = [](const Vec3& a, const Vec3& b) {
-        return length(a - b) > kSameVelocity * (length(a) + length(b));
-    };
     double key = next_key(body, from);
     if (is_deforming(body)) return key <= until ? std::optional(key) : std::nullopt;
     for (int count = 0; count < kMostKeysInStep && key <= until; ++count, key = next_key(body, key)) {
-        const MovingPose before = pose(body, std::nextafter(key, from));
-        const MovingPose after = pose(body, key);
-        if (differs(before.velocity, after.velocity) || differs(before.angular_velocity, after.angular_velocity)) {
-            return key;
-        }
+        if (has_jump(pose(body, std::nextafter(key, from)), pose(body, key))) return key;
     }
     return std::nullopt;
 }

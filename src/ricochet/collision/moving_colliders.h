@@ -26,6 +26,9 @@ using BodyId = std::uint32_t;
 /// The world body: all colliders at rest.
 inline constexpr BodyId kWorldBody = 0xFFFFFFFFU;
 
+/// Returns true if a velocity differs between two poses of a frame at the same time.
+[[nodiscard]] bool has_jump(const MovingPose& before, const MovingPose& after);
+
 /// All bodies of a scene: the world body and the moving bodies. Queries are safe from any number of threads, but not
 /// during begin_step() and prepare_radius().
 class MovingColliders {
@@ -71,8 +74,7 @@ public:
 
     /// Begins a step over [begin, end], in s. "The step" below is this one.
     void begin_step(double begin, double end);
-    /// Appends the bodies that come into the box during the step, except `except`, in ascending order. kWorldBody is
-    /// the first if its colliders are in the box.
+    /// Appends the bodies that come into the box during the step, except `except`, ascending, but kWorldBody first.
     void near(const Box3& box, BodyId except, std::vector<BodyId>& out) const;
     /// Appends the bodies with a frame that may be in the box at a time, in s, in ascending order. If the time is
     /// outside the step, it appends all bodies with a frame.
@@ -92,15 +94,13 @@ public:
 
     /// Sets the mobility of a dynamic body, in its frame's coordinates.
     void set_mobility(BodyId body, const Mobility& mobility) { bodies_[body].mobility = mobility; }
-    /// Sets the state at the start of the next substep: a flag for a velocity jump by impulses, and the angular
-    /// momentum of a free body, in kg m^2/s.
+    /// Sets the state in the next substep: a flag for a velocity jump, and a free body's angular momentum, kg m^2/s.
     void set_motion(BodyId body, bool has_jumped, const std::optional<Vec3>& angular_momentum) {
         bodies_[body].has_jumped = has_jumped;
         bodies_[body].angular_momentum = angular_momentum;
     }
     /// Returns the angular velocity of a free body at a time, in s, relative to that of its planned path, in rad/s. The
-    /// path has one angular velocity throughout, that of its middle. Impacts computed with the path's angular velocity
-    /// would not conserve energy.
+    /// path has one angular velocity throughout, that of its middle, with which impacts would not conserve energy.
     [[nodiscard]] Vec3 turning_beside_path(BodyId body, double time) const;
     [[nodiscard]] bool is_dynamic(BodyId body) const { return has_frame(body) && bodies_[body].mobility.has_value(); }
     /// Returns the mobility of a dynamic body at a time, in s, in world coordinates. Requires is_dynamic().
@@ -140,8 +140,7 @@ private:
 };
 
 /// Returns a box in the world that contains a body's box, given in its own coordinates, at all times in [begin, end],
-/// in s. It encloses straight paths between the positions at both ends and at keys, grown by a bound on the deviation
-/// from these paths.
+/// in s: straight paths between the positions at both ends and at keys, grown by a bound on the deviation.
 [[nodiscard]] Box3 swept_box(const FrameTree& frames, std::size_t frame, const Box3& box, double begin, double end);
 
 }  // namespace ricochet

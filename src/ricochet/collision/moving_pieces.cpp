@@ -10,8 +10,7 @@
 namespace ricochet {
 namespace {
 
-/// Least time between a cut at a deforming mesh's key and an end of the path, as a fraction of the path's duration.
-/// Local: a guard against pieces without duration.
+/// Least time between a deforming mesh's key and an end of the path, as a part of its duration. Local: a guard.
 constexpr double kLeastPart = 0x1p-45;
 
 /// Divisor in the error bound of a cubic Hermite path: over a time h it deviates from the function by at most h^4 /
@@ -50,8 +49,7 @@ MovingPieces::MovingPieces(const SurfacesInTime& surfaces, const ContactQuery& q
     cut();
 }
 
-/// Finds the bodies near the path by a box around the path in the world. For a path in the frame of a body, the box
-/// contains all positions that the path can reach.
+/// Finds the bodies near the path by a box in the world that contains all positions that the path can reach.
 void MovingPieces::find_bodies() {
     const MovingColliders& bodies = surfaces_.bodies();
     Box3 box = reach_of(query_.path, query_.radius);
@@ -82,8 +80,8 @@ void MovingPieces::find_deforming(const Box3& box) {
     if (deforming_.empty()) deforming_offset_ = 0.0;
 }
 
-/// Returns a bound of the path's fourth derivative in the coordinates of a body, in m/s^4. `world`: bounds of its
-/// derivatives in the world.
+/// Returns a bound, in m/s^4, of the path's fourth derivative for a body. world: bounds of its derivatives in the
+/// world.
 double MovingPieces::fourth_derivative(BodyId body, const DerivativeBounds& world) const {
     const MovingColliders& bodies = surfaces_.bodies();
     const MotionBounds& frame = bodies.bounds(body);

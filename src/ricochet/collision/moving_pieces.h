@@ -5,8 +5,7 @@
 /// Hermite path is within kMovingPathTolerance of the true path. The bound is h^4 / 384 times a bound of the fourth
 /// derivative (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", section II.6).
 ///
-/// Pieces end exactly at the keys of deforming meshes, and positions there are stored with the key's time. No segment
-/// therefore contains a key.
+/// Pieces end exactly at the keys of deforming meshes, and at the keys' times. So no segment contains a key.
 #pragma once
 
 #include <algorithm>
@@ -32,8 +31,7 @@ class MovingPieces {
 public:
     using NearBody = ContactScratch::Sweep::NearBody;
 
-    /// `query` is for a path in the frame of `surfaces`, and `start` is its stored start. The object owns the scratch
-    /// lists during its lifetime.
+    /// query: for a path in the frame of `surfaces` from the stored `start`. Owns the scratch lists in its lifetime.
     MovingPieces(const SurfacesInTime& surfaces, const ContactQuery& query, const PathPoint& start,
                  ContactScratch& scratch);
     ~MovingPieces() { scratch_.sweep = std::move(lists_); }
@@ -46,8 +44,7 @@ public:
     [[nodiscard]] std::span<const SurfaceId> deforming() const { return deforming_; }
     /// Returns the largest allowed deviation, in m, of a piece from the true path in the coordinates of a body.
     [[nodiscard]] double tolerance_of(BodyId body) const;
-    /// Returns the distance from the path, in m, at which positions are queried. It covers the error of the cubics and
-    /// rounding.
+    /// Returns the distance from the path, in m, to query, which covers the error of the cubics and rounding.
     [[nodiscard]] double beside() const { return beside_; }
 
     /// Returns the times along the path at which it is cut, in s, from 0 to its duration.

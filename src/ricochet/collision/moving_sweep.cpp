@@ -64,8 +64,7 @@ void merge(Contact contact, std::optional<Contact>& first) {
 
 }  // namespace
 
-/// Returns the end of the next piece, in s along the path. The piece ends at the next cut, unless a fine piece, or a
-/// longer piece without contacts, ends earlier.
+/// Returns the end of the next piece, in s along the path: a fine one, a longer one without contacts, or the next cut.
 double MovingSweep::end_of_piece(const PathPoint& start) {
     is_clear_ = false;
     const double cut = pieces_.cuts()[next_];
@@ -84,9 +83,8 @@ double MovingSweep::end_of_piece(const PathPoint& start) {
     return begin_ + fine;
 }
 
-/// Returns the time, in s along the path, until which no surface of other frames comes near the path. If this time is
-/// less than a fine piece away, returns the start of the piece. The search ends where the errors of the cubics exceed
-/// the margins of the bodies' boxes.
+/// Returns the time, in s along the path, until which no surface of other frames comes near, or the start of the piece
+/// if that is less than a fine piece away. The search ends where the cubics' errors exceed the margins of the boxes.
 double MovingSweep::clear_until(const PathPoint& start, double fine) {
     double longest = kLongestPiece * fine;
     for (MovingPieces::NearBody& body : pieces_.bodies()) {

@@ -23,8 +23,7 @@ namespace ricochet {
 /// Sweep of one path, piece by piece. All arguments must outlive the object, and `scratch` must belong to its thread.
 class MovingSweep {
 public:
-    /// `query` is for a path in the frame of `surfaces`, and `geometry` for the colliders of that frame. `start` is the
-    /// stored start of the path.
+    /// query: for a path in the frame of `surfaces` and `geometry`, from the stored `start`.
     MovingSweep(const SurfacesInTime& surfaces, const SurfaceGeometry& geometry, const ContactQuery& query,
                 const PathPoint& start, ContactScratch& scratch)
         : surfaces_(surfaces),
@@ -45,8 +44,7 @@ public:
     [[nodiscard]] const Path& path() const { return piece_; }
     [[nodiscard]] const PathClock& clock() const { return clock_; }
 
-    /// Returns the first contact of the whole path for a particle that never leaves the path. The contact's time is
-    /// along the whole path.
+    /// Returns the first contact, in times of the whole path, of a particle that never leaves the path.
     [[nodiscard]] std::optional<Contact> first_contact();
 
 private:

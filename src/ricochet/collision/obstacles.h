@@ -23,9 +23,8 @@ public:
     /// Returns true if a surface blocks the segment to `to`. Both positions must be finite.
     [[nodiscard]] bool block(const Vec3& to) const;
 
-    /// Collects the surfaces that block the segment to `to`, in ascending order, with their normals at the free
-    /// position p. Each surface appears once. Edges beside a face of the same normal are left out. `v` is the velocity,
-    /// for surfaces that are hit edge-on.
+    /// Collects the surfaces that block the segment to `to`, ascending, each once, with their normals at the free
+    /// position p and without seams (drop_seams()). `v` is the velocity, for surfaces that are hit edge-on.
     void gather(const Vec3& to, const Vec3& p, const Vec3& v, std::vector<ContactSurface>& out) const;
 
 private:

@@ -10,8 +10,8 @@
 namespace ricochet {
 namespace {
 
-/// Calls consider(surface, distance) for all planes and shapes, and for the triangles within the distance `within`, in
-/// m. Each call returns the new value of `within`.
+/// Calls consider(surface, distance) for all planes and shapes, and for triangles up to `within`, m, which it returns
+/// anew.
 template <class Consider>
 void visit_distances(const CollisionWorld& world, const Vec3& center, double within, const Consider& consider) {
     for (const auto& plane : world.planes()) {

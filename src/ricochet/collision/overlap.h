@@ -12,16 +12,14 @@ namespace ricochet {
 /// A surface that a sphere overlaps.
 struct Overlap {
     SurfaceId surface = 0;
-    /// Distance of the surface from the centre, in m. The sphere reaches behind the surface by its radius minus this
-    /// distance.
+    /// Distance of the surface from the centre, in m, which is less than the radius.
     double distance = 0.0;
 };
 
-/// Returns the nearest surface that a sphere overlaps. A sphere overlaps a surface if the centre's distance is smaller
-/// than the radius by more than sphere_tolerance(). If several have the same distance, the one with the smallest number
-/// is returned. Returns nothing for a sphere that at most touches, for a point (radius 0), and for a centre that is not
-/// finite. A sphere wholly inside a solid overlaps nothing. The broad phase proposes the triangles in one point query.
-/// Can be called from any number of threads.
+/// Returns the nearest surface that a sphere overlaps: the centre's distance is smaller than the radius by more than
+/// sphere_tolerance(). Of several at the same distance, it is the one with the smallest number. Returns nothing for a
+/// sphere that at most touches or is wholly inside a solid, for a point (radius 0), and for a centre that is not
+/// finite. Needs one point query. Can be called from any number of threads.
 [[nodiscard]] std::optional<Overlap> deepest_overlap(const CollisionWorld& world, const Vec3& center, double radius);
 
 /// Returns the bodies with a frame that a sphere, or a point (radius 0), may touch or overlap at a time, in s. The list
@@ -33,9 +31,8 @@ struct Overlap {
 [[nodiscard]] std::optional<Overlap> deepest_overlap(const MovingColliders& bodies, const Vec3& center, double radius,
                                                      double time);
 
-/// Returns a position beside `center` for a particle that lies exactly on surfaces of bodies at a time, in s. The
-/// position is a few contact offsets away, along the normals of these surfaces. Returns nothing if the particle lies on
-/// none.
+/// Returns a position for a particle that lies exactly on surfaces of bodies at a time, in s: a few contact offsets
+/// away, along the normals of these surfaces. Returns nothing if the particle lies on none.
 [[nodiscard]] std::optional<Vec3> off_bodies(const MovingColliders& bodies, const Vec3& center, double time);
 
 /// Returns the surfaces that a sphere, or a point (radius 0), touches, in the order of their numbers. A surface is

@@ -30,8 +30,7 @@ AffineMap checked_map(const ColliderDescription& collider, const AffineMap& map)
     return map;
 }
 
-/// Throws InputError if a surface is too small after its placement. `extents`, in m, are its sizes along its own axes.
-/// checked_map() reports a scale of zero.
+/// Throws InputError if a placed surface is too small. `extents`, in m: its local sizes. checked_map() reports scale 0.
 void require_size(const ColliderDescription& collider, const AffineMap& map, const Vec3& extents) {
     for (int axis = 0; axis < 3; ++axis) {
         const double scale = max_abs(Vec3{map.row_x[axis], map.row_y[axis], map.row_z[axis]});
@@ -45,8 +44,7 @@ void require_size(const ColliderDescription& collider, const AffineMap& map, con
     }
 }
 
-/// Throws InputError if a mesh is too small after its placement. A mesh may be flat, so its largest extent is used for
-/// all axes.
+/// Throws InputError if a placed mesh is too small, by its largest extent, because it may be flat.
 void require_size(const ColliderDescription& collider, const AffineMap& map, const std::vector<Vec3>& vertices) {
     Box3 box;
     for (const Vec3& vertex : vertices) box.include(vertex);

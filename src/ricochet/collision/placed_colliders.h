@@ -43,8 +43,7 @@ public:
     };
     [[nodiscard]] const Range& range(std::size_t collider) const { return ranges_[collider]; }
     [[nodiscard]] const Range& range_of(SurfaceId surface) const { return ranges_[list_->collider_of(surface)]; }
-    /// Returns true if the surface belongs to a collider of this frame. The functions below that take a surface accept
-    /// only surfaces of this frame.
+    /// Returns true if the surface belongs to a collider of this frame, as the functions below require.
     [[nodiscard]] bool owns(SurfaceId surface) const { return range_of(surface).kind != Kind::elsewhere; }
     /// Returns true if the frame has no colliders.
     [[nodiscard]] bool empty() const { return triangles_.empty() && planes_.empty() && shapes_.empty(); }
@@ -73,8 +72,7 @@ public:
 
     [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
     [[nodiscard]] std::span<const Vec3> vertices() const { return vertices_; }
-    /// Returns true if the triangle has no area. Collisions ignore such triangles, because the edges of their
-    /// neighbours cover them.
+    /// Returns true if the triangle has no area. Collisions ignore it, because the edges of its neighbours cover it.
     [[nodiscard]] bool is_degenerate(std::uint32_t triangle) const {
         return degenerate_count_ != 0 && degenerate_[triangle] != 0;
     }
@@ -85,8 +83,7 @@ public:
         if (range.kind != Kind::mesh) return std::nullopt;
         return range.first_triangle + (surface - range.first_surface);
     }
-    /// Returns the material of a surface of any frame: the material of its triangle if it has one, otherwise of its
-    /// collider.
+    /// Returns the material of a surface of any frame: of its triangle if it has one, otherwise of its collider.
     [[nodiscard]] std::uint32_t material_of(SurfaceId surface) const { return list_->material_of(surface); }
 
     /// Corners of a triangle.
@@ -100,8 +97,7 @@ public:
         return {vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]};
     }
 
-    /// Returns the mesh of a collider in the frame's coordinates, with its degenerate triangles; nothing if it is not a
-    /// mesh or box.
+    /// Returns the mesh of a collider in the frame's coordinates, with degenerate triangles; nothing for other shapes.
     [[nodiscard]] std::optional<TriangleMesh> mesh_of(std::size_t collider) const;
     /// Returns the number of surfaces of a collider: its triangles, 1 for a plane or ball, 3 for a cylinder.
     [[nodiscard]] std::size_t surface_count_of(std::size_t collider) const;

@@ -8,8 +8,7 @@
 namespace ricochet {
 namespace {
 
-/// Certifies a path by chords. It halves the path until its chords are free, and stops at a blocked chord that cannot
-/// be halved further.
+/// Certifies a path by chords: halves it until they are free, or until a blocked one cannot be halved further.
 class PathCertifier {
 public:
     PathCertifier(const NearSurfaces& near, const Path& path, const PathPoint& start, std::vector<PathPoint>& chain)
@@ -72,8 +71,7 @@ Vec3 escape_direction(const Normals& normals) {
     return kContactOffsetUlps * length(direction) <= kLargestContactOffsetUlps ? direction : sum;
 }
 
-/// Returns the displacement along the normal that moves the path's position at the contact to exactly `radius` from the
-/// first surface.
+/// Returns the displacement along the normal that moves the position at the contact to `radius` from the first surface.
 Vec3 correction_at(const NearSurfaces& near, const PathPoint& at, const Contact& contact) {
     const SurfaceId surface = contact.first().surface;
     if (near.radius() == 0.0) return -near.signed_distance_from(surface, at) * near.unit_normal_of(surface, at);

@@ -1,8 +1,7 @@
 /// \file
-/// Safe position of a particle after an impact: a representable point just before the surface. It is reached along
-/// certified segments, none of which intersects any surface. Every segment is checked exactly against the surfaces near
-/// the path. Particles move only along such segments. It is therefore proven, for the chain of stored positions, that
-/// no particle passes through a surface.
+/// Safe position of a particle after an impact: a representable point just before the surface, reached along certified
+/// segments. Each segment is proven exactly to intersect no surface near the path. Particles move only along such
+/// segments, so no particle passes through a surface.
 #pragma once
 
 #include <optional>
@@ -19,9 +18,8 @@ struct CertifiedPath {
         blocker;  ///< surface that blocks the shortest segment after `reached`; empty if the target was reached
 };
 
-/// Follows `path` from its start to `target`, its position at time `until`, in certified segments. If the chord is
-/// free, it is the only segment. Otherwise the arc is halved, down to kCertificateDepth. `chain` is replaced by the
-/// certified positions in order, the start first.
+/// Follows `path` from its start to `target`, its position at time `until`, in certified segments: the chord if it is
+/// free, otherwise halves down to kCertificateDepth. Sets `chain` to the certified positions, the start first.
 [[nodiscard]] CertifiedPath certify_path(const NearSurfaces& near, const Path& path, double until, const Vec3& target,
                                          std::vector<PathPoint>& chain);
 
@@ -39,14 +37,12 @@ struct SafePosition {
 [[nodiscard]] SafePosition find_safe_position(const NearSurfaces& near, const Path& path, const Contact& contact,
                                               std::vector<PathPoint>& chain);
 
-/// Returns a position for a particle that was put exactly on surfaces. The position is at least one contact offset away
-/// from them, on the side to which their normals point. The segment to it leaves these surfaces and intersects no
-/// other. `near` must be the result of a query for a path that starts at p. Returns nothing if p is on no surface or no
-/// position was found.
+/// Returns a position for a particle that was put exactly on surfaces: at least one contact offset away from them,
+/// along their normals. The segment to it intersects no other surface. `near`: of a query for a path that starts at p.
+/// Returns nothing if p is on no surface or no position was found.
 [[nodiscard]] std::optional<Vec3> step_off(const NearSurfaces& near, const Vec3& p);
 
-/// Returns the contact with the surface that blocks a certificate, if root finding found no contact. Rounding can let
-/// the roots of a path miss a surface.
+/// Returns the contact with the surface that blocks a certificate, for which rounding hid the root of the path.
 [[nodiscard]] Contact contact_with_blocker(const NearSurfaces& near, const Path& path, const CertifiedPath& followed);
 
 }  // namespace ricochet

@@ -29,10 +29,9 @@ struct SurfacePoint {
     bool on_rim = false;  ///< true if the nearest feature is an open edge or its end, where the side is not defined
 };
 
-/// Signed distances of one collision world. Immutable; safe from any number of threads. Results depend neither on the
-/// broad phase nor on the order in which it proposes triangles. The nearest triangle is the smallest under (squared
-/// distance in doubles, face before edge before vertex, surface). A point on a face's rim that is as near as its face
-/// counts as a point of the face.
+/// Signed distances of one collision world. Immutable; safe from any number of threads. The nearest triangle is the
+/// smallest under (squared distance in doubles, face before edge before vertex, surface), whatever the broad phase
+/// proposes. A point on a face's rim that is as near as its face counts as a point of the face.
 class SignedDistance {
 public:
     /// The world must outlive this object.
@@ -55,8 +54,8 @@ public:
 private:
     using Kind = CollisionWorld::Kind;
 
-    /// The triangles of a collider: [first_triangle, end_triangle) of the world's triangles. The pseudonormals are
-    /// indexed from the first of these triangles.
+    /// Triangles of a collider: [first_triangle, end_triangle) of the world's, for which pseudonormals are indexed from
+    /// 0.
     struct Mesh {
         std::uint32_t collider;
         std::uint32_t first_triangle;

@@ -10,8 +10,7 @@ double offset_for_carrying(const MovingPose& pose, const Vec3& local_position) {
     return kCarryingOffsets * max_abs(pose.local_position(pose.point(local_position)) - local_position);
 }
 
-/// Computes the tolerance from the coordinates of the segment, not of the path. The larger rounding error at a distant
-/// end of the path must not allow an overlap here.
+/// The tolerance follows from the segment, so that a distant end of the path with more rounding allows no overlap here.
 bool SurfacesInOtherFrames::is_free(const Deforming& triangle, const PathPoint& p, const PathPoint& q) const {
     const double tolerance = sphere_tolerance(triangle.radius, std::max(max_abs(p.world), max_abs(q.world)));
     const double radius = std::max(0.0, triangle.radius - tolerance);

@@ -10,9 +10,8 @@
 
 namespace ricochet {
 
-/// Returns the distance, in m, that a particle attached to a frame must keep from surfaces. Reason: the orientation of
-/// a dynamic body accumulates rounding errors. Conversion to the world and back therefore gives a different position.
-/// The result is a multiple of this error.
+/// Returns the distance, in m, that a particle attached to a frame must keep from surfaces: a multiple of the rounding
+/// error of a conversion to the world and back, which the orientation of a dynamic body accumulates.
 [[nodiscard]] double offset_for_carrying(const MovingPose& pose, const Vec3& local_position);
 
 /// Results of queries in the frames of other bodies near one path, or near a piece of it. In each frame the path is a
@@ -31,8 +30,8 @@ public:
         double radius = 0.0;  ///< distance that segments keep, minus sphere_tolerance() of each segment, in m
     };
 
-    /// `start` is the stored start of the path. Bodies must be added in the order of their queries, and triangles in
-    /// ascending order.
+    /// `start` is the stored start of the path. Bodies must be added in the order of their queries, triangles
+    /// ascending.
     SurfacesInOtherFrames(const SurfacesInTime& surfaces, const PathPoint& start)
         : surfaces_(surfaces), start_(start) {}
 
@@ -51,8 +50,7 @@ public:
     [[nodiscard]] const SurfacesInTime& surfaces() const { return surfaces_; }
     [[nodiscard]] const PathPoint& start() const { return start_; }
 
-    /// Equivalents of is_segment_free(), segment_blocker(), overlap_deepened_by(), covers_chord() and offset_at() of
-    /// NearSurfaces, for the surfaces of other frames.
+    /// The functions of NearSurfaces for space-time segments, applied to the surfaces of other frames.
     [[nodiscard]] bool are_free(const PathPoint& p, const PathPoint& q) const;
     [[nodiscard]] std::optional<SurfaceId> blocker(const PathPoint& p, const PathPoint& q) const;
     [[nodiscard]] std::optional<SurfaceId> overlap_deepened_by(const PathPoint& p, const PathPoint& q) const;

@@ -69,8 +69,7 @@ public:
     [[nodiscard]] Vec3 direction_from(BodyId body, const Vec3& d, double s) const;
     /// Selects the velocity before or after a jump. Velocities may jump at a key of a frame.
     enum class Limit { before, after };
-    /// Returns the velocity, in a body's coordinates, of a point of the world that has the given velocity in this
-    /// frame.
+    /// Returns the velocity, in a body's coordinates, of a point with the given velocity in this frame.
     [[nodiscard]] Vec3 velocity_in(BodyId body, const PathPoint& at, const Vec3& velocity,
                                    Limit limit = Limit::after) const;
 

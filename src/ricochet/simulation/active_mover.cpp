@@ -15,8 +15,8 @@ namespace ricochet {
 
 namespace {
 
-/// Distances, in particles, from a prefetch to the move: of a particle's data, of its candidate triangles, and of their
-/// corners.
+/// Distances, in particles, from a prefetch to the move. Three stages are needed, because neighbours in space are
+/// scattered in memory: a particle's data, then its candidate triangles, then their corners.
 constexpr std::size_t kPrefetchDistance = 6;
 constexpr std::size_t kTrianglePrefetchDistance = 4;
 constexpr std::size_t kVertexPrefetchDistance = 2;
@@ -26,8 +26,7 @@ bool flies_on(const MovingParticle& moved, const MoveOutcome& outcome) {
     return moved.contact.count == 0 && moved.contact.cascade_left == 0.0 && outcome.end == MoveEnd::moving;
 }
 
-/// Returns true if a dynamic body is within the distance that the particle can travel in a duration, in s. Impacts are
-/// not considered.
+/// Returns true if a dynamic body is within reach of the particle in a duration, in s, without regard to impacts.
 bool is_near_dynamic_body(const ResponseRules& rules, const ForceInput& state, double duration) {
     const double speed = length(state.velocity) + duration * length(rules.forces.acceleration(state));
     const double reach = state.radius + 2.0 * duration * speed;
@@ -53,8 +52,6 @@ void prefetch_vertices(const ContactCandidates& candidates, const CollisionWorld
     }
 }
 
-// Prefetches in three stages, because neighbours in space are scattered in memory. The stages fetch the data for load()
-// and store(), the candidate triangles, and the corners of these triangles.
 void prefetch_ahead(const ActiveMover& mover, const QuerySchedule& schedule, std::span<const std::uint32_t> active,
                     std::size_t k) {
     if (k + kPrefetchDistance < active.size()) mover.prefetch(active[k + kPrefetchDistance]);
@@ -67,9 +64,8 @@ void prefetch_ahead(const ActiveMover& mover, const QuerySchedule& schedule, std
     }
 }
 
-/// Updates the core of an overlapping sphere, at the time of the stored position. The core grows with the distance of
-/// the surfaces from the centre, and never shrinks. In contact, the core keeps its radius. Without an overlap, the core
-/// is removed.
+/// Updates the core of an overlapping sphere, at the time of the stored position. It grows with the distance of the
+/// surfaces, and never shrinks. It keeps its radius in contact, and is removed without an overlap.
 void grow_core(ParticleStore& store, const MovingColliders& bodies, std::size_t i, double time) {
     if (!store.cores().has(i) || store.is_fixed(i)) return;
     const Particles& particles = store.particles();
@@ -224,9 +220,9 @@ void ActiveMover::write_back(std::size_t i, const MovingParticle& moved, const M
 }
 
 void ActiveMover::apply_velocity_change(std::size_t i, const Vec3& change, double time, double duration,
-                                        const Coupling& pull, MoveScratch& scratch) {
+                                        const Coupling* pull, MoveScratch& scratch) {
     MovingParticle particle = load(i, time);
-    particle.state.coupling = &pull;
+    if (pull != nullptr) particle.state.coupling = pull;
     response_.apply_correction(particle, change, duration, scratch);
     parts_.store.particles().velocity[i] = particle.state.velocity;
     parts_.store.particles().spin[i] = parts_.store.spin_of(i, particle);
@@ -271,7 +267,7 @@ void ActiveMover::write_back(IslandMember& member, const TimeSpan& step, BlockRe
         return;
     }
     // A sphere that has slept on surfaces alone has pressed on them until now, so its weight is added.
-    if (parts_.store.is_asleep(i)) record.counts.lost_impulses += sleepers_.add_weight(i, life.begin, 1.0);
+    if (parts_.store.is_asleep(i)) record.counts.lost_impulses += add_weight(i, life.begin, 1.0);
     const Vec3 from = parts_.store.particles().position[i];
     write_back(i, moving, member.outcome, life.end, {member.lists.hits, {}, member.pair_velocity_change}, record);
     note_passages(parts_, i, from, member.trajectory, member.lists.segments, record);

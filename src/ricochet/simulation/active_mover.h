@@ -17,15 +17,12 @@
 #include "ricochet/simulation/particle_store.h"
 #include "ricochet/simulation/query_schedule.h"
 #include "ricochet/simulation/run_recorder.h"
-#include "ricochet/simulation/sleeping_particles.h"
 
 namespace ricochet {
 
 class CloudMotion;
 class FrictionMeter;
 class SleepingIslands;
-
-// Active set: the particles that need a query in a step, and the blocks in which threads move these particles.
 
 /// Particles per unit of parallel work.
 inline constexpr std::size_t kParticleBlock = 256;
@@ -45,11 +42,11 @@ struct ParticleRange {
     [[nodiscard]] bool empty() const { return begin == end; }
 };
 
-/// A list of particles cut into blocks.
+/// The particles that need a query in a step, and the blocks in which threads move them.
 class ActiveSet {
 public:
     ActiveSet() = default;
-    /// Makes blocks of the given sizes. The caller must fill in the particles with block().
+    /// Makes blocks of the given sizes. The caller fills in the particles with block().
     explicit ActiveSet(std::vector<std::size_t> sizes);
 
     [[nodiscard]] std::size_t size() const { return particles_.size(); }
@@ -61,15 +58,13 @@ public:
         return std::span(particles_).subspan(begin_of(k), ends_[k] - begin_of(k));
     }
 
-    /// Cuts the list into full blocks of kParticleBlock particles. The number of blocks is kept small, because a single
-    /// thread adds up their counts.
+    /// Cuts the list into full blocks of kParticleBlock particles. Few blocks are best: one thread adds up their
+    /// counts.
     void cut_evenly();
     /// Sorts the list along a space-filling curve in the box, so that consecutive particles query the same triangles.
-    /// Deterministic.
     void sort_by_position(const std::vector<Vec3>& positions, const Box3& box);
-    /// Returns true if sorting saves more than it costs. The set must be a small part of all particles, because
-    /// otherwise their order in memory is already good. The mesh must be too large for the caches. Sorting most of the
-    /// particles fetches them from memory at random, which made debris 40 % slower
+    /// Returns true if sorting saves more than it costs. The mesh must be too large for the caches, and the set a small
+    /// part of all particles. Otherwise sorting fetches most of them at random, which made debris 40 % slower
     /// (docs/decisions/2026-11-23-what-pays.md).
     [[nodiscard]] bool is_worth_sorting(std::size_t all_particles, std::size_t triangles) const;
 
@@ -86,8 +81,7 @@ inline TimeSpan life_in(const Particles& particles, std::size_t i, const TimeSpa
             std::min(step.end, particles.birth_time[i] + particles.lifetime[i])};
 }
 
-/// Objects that take part in the motion of single particles. Each is owned by a module. A null pointer means that the
-/// run does not have this object.
+/// Objects that take part in the motion of single particles, owned by modules. Null: the run does not have the object.
 struct MoveObservers {
     CoupledMotion* coupled = nullptr;  ///< null only before the first step
     const Offspring* offspring = nullptr;
@@ -110,13 +104,10 @@ struct MoverParts {
 [[nodiscard]] Vec3 impulse_of(std::span<const SurfaceHit> hits);
 
 /// Moves particles by the response. Stores their new states, the forecasts of their next queries, and the records of
-/// their blocks.
+/// their blocks. Also counts the weights of particles that sleep and are therefore not moved.
 class ActiveMover {
 public:
-    ActiveMover(const MoverParts& parts, const Response& response)
-        : parts_(parts),
-          response_(response),
-          sleepers_(parts.store, parts.schedule, parts.recorder, parts.observers, response) {}
+    ActiveMover(const MoverParts& parts, const Response& response) : parts_(parts), response_(response) {}
 
     [[nodiscard]] const Response& response() const { return response_; }
     /// Returns a mover that moves the same particles by another response. The response must outlive the mover.
@@ -134,10 +125,10 @@ public:
     /// Moves one particle in a substep. lead: null for a particle that is not in a cloud.
     void move_one(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record,
                   const Lead* lead = nullptr);
-    /// Applies a velocity change, in m/s, to a cloud particle at a time, in s. The change acts as if a force had caused
-    /// it in the `duration` seconds before. Surfaces that support the particle oppose the change as they would oppose
-    /// this force.
-    void apply_velocity_change(std::size_t i, const Vec3& change, double time, double duration, const Coupling& pull,
+    /// Applies a velocity change, in m/s, to particle i at a time, in s. The change acts as if a force had caused it in
+    /// the `duration` seconds before. Supporting surfaces oppose it like this force. pull: force of a cloud; null:
+    /// none.
+    void apply_velocity_change(std::size_t i, const Vec3& change, double time, double duration, const Coupling* pull,
                                MoveScratch& scratch);
     /// Records the hits, loads and contacts of moves. lists: a MoveScratch filled since prepare(), or MoveLists.
     template <class Lists>
@@ -161,8 +152,8 @@ public:
 
     // For spheres that touch each other, which are moved together.
 
-    /// Loads a particle into a new island member, at the start of its life in the step. Returns false if the particle
-    /// does not live in the step.
+    /// Loads a particle, at the start of its life in the step, into a new island member. Returns false without such a
+    /// life.
     [[nodiscard]] bool load_member(std::size_t i, const TimeSpan& step, IslandMember& member);
     /// Stores the final state and the records of a member.
     void write_back(IslandMember& member, const TimeSpan& step, BlockRecord& record);
@@ -177,8 +168,22 @@ public:
     /// Returns the loads of the particles of the range on dynamic bodies, as if the step were made. Changes nothing.
     [[nodiscard]] std::vector<ColliderLoad> preview(const ParticleRange& range, const TimeSpan& step);
 
-    /// Returns the particles that sleep, and are therefore not moved.
-    [[nodiscard]] SleepingParticles& sleepers() { return sleepers_; }
+    // For particles that sleep.
+
+    /// Adds to the totals of surfaces the impulse of a sleeping particle's weight from its last move until a time, in
+    /// s. A sign of -1 subtracts exactly the impulse that +1 adds. Returns the number of impulses that were too large
+    /// for the totals. Several threads may call this function for different particles.
+    std::uint64_t add_weight(std::size_t i, double until, double sign);
+    /// Calls add_weight() for all particles.
+    void add_weights(double until, double sign);
+    /// Adds impulses to the totals of surfaces.
+    void add_to_totals(std::span<const SurfaceHit> hits) {
+        parts_.recorder.statistics().lost_impulses += parts_.recorder.totals().add(hits);
+    }
+    /// Wakes a sphere that sleeps on others, at a time, in s, before it is removed from the sleeping islands.
+    void wake(std::size_t i, double time);
+    /// Tells the verifier, if there is one, that a particle has kept its position in a step.
+    void check_sleeper(std::size_t i, const TimeSpan& step, BlockRecord& record) const;
 
 private:
     [[nodiscard]] CoupledMotion& coupled() const { return *parts_.observers.coupled; }
@@ -198,8 +203,7 @@ private:
     [[nodiscard]] RunawayCause runaway_cause(std::size_t i, const MoveImpulses& impulses) const;
 
     MoverParts parts_;
-    const Response& response_;  // by make_response(); `exact` without a flow moves by ParticleMover::run()
-    SleepingParticles sleepers_;
+    const Response& response_;            // by make_response(); `exact` without a flow moves by ParticleMover::run()
     std::vector<std::uint32_t> bounces_;  // of each particle since begin_step(); newer particles have no entry
 };
 

@@ -74,8 +74,7 @@ bool StepBirths::make() {
 }
 
 // Takes at most as many births of each emitter as the population has room for, so that few births are made in vain. On
-// a single rank, a wave ends with the first birth that does not fit into memory. make() can then report the error
-// early.
+// a single rank, a wave ends with the first birth that does not fit into memory, so that make() reports it early.
 StepBirths::Wave StepBirths::next_wave() {
     const bool may_end = share_.is_alone() && limits_.most_in_memory < limits_.most_births;
     const std::uint64_t most = may_end ? std::min(kMostInWave, limits_.most_in_memory + 1 - made_here_) : kMostInWave;
@@ -122,8 +121,7 @@ void StepBirths::make(Wave& wave) {
     for (const Entry& entry : wave) ++made_of_[entry.emitter];
 }
 
-// Keeps the accepted births of this rank until the step ends. Frees the memory of the other births if fewer than half
-// of all births are kept.
+// Keeps this rank's accepted births until the step ends. Frees the memory if these are fewer than half.
 void StepBirths::keep_local(Wave& wave, std::span<const std::size_t> mine, std::vector<std::optional<Particle>>& made) {
     std::vector<std::size_t> here;
     for (std::size_t j = 0; j < mine.size(); ++j) {
@@ -212,8 +210,7 @@ void Emission::emit(const TimeSpan& step) {
 }
 
 /// Returns the tests of births in a step. A new sphere must not overlap a surface, or another sphere if spheres
-/// collide. A test is empty if there is nothing to overlap. occupancy: the first tested birth fills it with the spheres
-/// present.
+/// collide. A test is empty if there is nothing to overlap. The first test fills `occupancy` with the spheres present.
 BirthTests Emission::tests_in(const TimeSpan& step, std::optional<SpawnOccupancy>& occupancy) const {
     BirthTests tests;
     const bool do_spheres_meet = parts_.options.particle_contacts.has_value();

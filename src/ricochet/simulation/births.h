@@ -1,10 +1,9 @@
 /// \file
 /// Private to the simulation: the emitters of a run, and the births of a step, which all threads and all ranks make.
 ///
-/// A birth depends only on its emitter and on its number within the emitter. Any thread and any rank can therefore make
-/// it. All ranks must know all births, because ids follow the order of (time, emitter, number) and a refused birth gets
-/// no id. Each rank takes all births off the schedule, which is cheap, and makes only its own particles. Births that
-/// surfaces refuse are communicated to all ranks.
+/// A birth depends only on its emitter and on its number within the emitter, so any thread and any rank can make it.
+/// All ranks must know all births, because ids follow the order of (time, emitter, number) and a refused birth gets no
+/// id. Each rank takes all births off the schedule, makes only its own particles, and tells the others of refusals.
 #pragma once
 
 #include <cstdint>

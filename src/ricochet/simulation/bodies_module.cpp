@@ -41,8 +41,7 @@ double BodiesModule::plan_new(const ParticleRange& generation, const TimeSpan& r
     return !parts_.scene.moving().empty() ? settle(generation, part) : part.end;
 }
 
-/// Plans a substep repeatedly, until the planned loads agree with the loads of the particles in the substep. Returns
-/// the end of the substep, in s.
+/// Plans a substep repeatedly, until planned loads agree with the particles' loads. Returns its end, in s.
 double BodiesModule::settle(const ParticleRange& generation, TimeSpan part) {
     for (int round = 0;; ++round) {
         parts_.scene.begin_step(part);
@@ -53,8 +52,7 @@ double BodiesModule::settle(const ParticleRange& generation, TimeSpan part) {
     }
 }
 
-/// Returns the earliest time, in s, at which a particle's position is stored. This time is at most the start of the
-/// step, because children may start there.
+/// Returns the earliest time, in s, of a stored position, at most the step's start, where children may start.
 double BodiesModule::oldest_position() const {
     const ParticleStore& store = parts_.population.store();
     const double now = parts_.clock.time_at(parts_.recorder.statistics().steps);

@@ -13,8 +13,7 @@ namespace ricochet {
 namespace {
 
 /// Largest allowed entry of the product of a rotation and its transpose, minus the unit matrix. A step adds a few
-/// rounding errors of 1e-16, so a run of 1e9 steps stays below this bound. A larger bound would accept stretched
-/// shapes. Local: a limit of input values.
+/// rounding errors of 1e-16, so 1e9 steps stay below. More would accept stretched shapes. Local: a limit of input.
 constexpr double kMostSkew = 1e-6;
 
 bool is_unit(const Vec3& v) { return std::fabs(dot(v, v) - 1.0) <= kMostSkew; }
@@ -28,8 +27,7 @@ bool is_rigid(const AffineMap& map) {
 }
 
 bool is_path(const BodyPath& path) {
-    const bool is_path_finite =
-        std::all_of(path.center_path.begin(), path.center_path.end(), [](const Vec3& v) { return is_finite(v); });
+    const bool is_path_finite = std::all_of(path.center_path.begin(), path.center_path.end(), is_finite);
     const bool is_turn_finite =
         std::all_of(path.turns.begin(), path.turns.end(), [](double x) { return std::isfinite(x); });
     return std::isfinite(path.begin) && std::isfinite(path.end) && path.begin <= path.end && is_path_finite &&
@@ -42,15 +40,6 @@ bool is_body(const DrivenBody& body) {
     return is_rigid(body.world_from_frame()) && is_finite(body.center()) && length(body.velocity()) <= kMaxSpeed &&
            length(body.angular_velocity()) <= kMaxSpeed && std::isfinite(body.coordinate()) &&
            std::fabs(body.rate()) <= kMaxSpeed;
-}
-
-bool differ(const Vec3& a, const Vec3& b) { return length(a - b) > kSameVelocity * (length(a) + length(b)); }
-
-/// Returns true if the velocity at the beginning of a path differs from the velocity at the end of the path before it.
-bool jumps(const BodyPath& before, const BodyPath& after) {
-    const MovingPose came = before.at(before.end);
-    const MovingPose goes = after.at(after.begin);
-    return differ(came.velocity, goes.velocity) || differ(came.angular_velocity, goes.angular_velocity);
 }
 
 }  // namespace
@@ -93,8 +82,8 @@ void BodyPaths::plan(const std::vector<Wrench>& loads, double begin, double end)
         }
         frames_->forget_paths(frame_of_[k], oldest_);
         const double size = max_abs(next.at(end).world_from_frame.translation);
-        // The rotation is checked too, because a body can turn about a centre that does not move. Sweeps along such a
-        // fast rotation would not end.
+        // The rotation is checked too, because a body can turn in place. Sweeps along such a fast rotation would not
+        // end.
         const MotionBounds motion = next.bounds(begin, end);
         if (!(size <= kLargestCoordinate) || !(std::max(motion.origin[1], motion.rotation[1]) < kMaxSpeed)) {
             throw DivergedError(fmt::format(
@@ -142,7 +131,8 @@ double BodyPaths::repeat(double time) {
 void BodyPaths::publish_velocity_jump(std::size_t body, std::size_t path) const {
     if (collider_of_[body] == kWorldBody) return;
     const std::vector<BodyPath>& paths = of(body);
-    const bool has_jumped = path > 0 && jumps(paths[path - 1], paths[path]);
+    const bool has_jumped =
+        path > 0 && has_jump(paths[path - 1].at(paths[path - 1].end), paths[path].at(paths[path].begin));
     const bool is_free = bodies_[body].description().joint == JointKind::free;
     colliders_->set_motion(collider_of_[body], has_jumped,
                            is_free ? std::optional(bodies_[body].angular_momentum()) : std::nullopt);

@@ -69,7 +69,7 @@ std::size_t Simulation::remove_particles(std::span<const std::uint64_t> ids) {
         if (!std::binary_search(sorted.begin(), sorted.end(), impl().particles().id[i])) continue;
         keep[i] = 0;
         ++removed;
-        statistics.lost_impulses += impl().mover.sleepers().add_weight(i, time(), 1.0);
+        statistics.lost_impulses += impl().mover.add_weight(i, time(), 1.0);
         statistics.resting -= impl().particles().resting[i];
         statistics.asleep -= population.store().is_asleep(i) ? 1 : 0;
     }
@@ -94,7 +94,7 @@ void Simulation::set_forces(std::vector<std::unique_ptr<Force>> forces) {
     population.flights().end_deferring();
     SimulationStatistics& statistics = impl().recorder.statistics();
     for (std::size_t i = 0; i < population.size(); ++i) {
-        statistics.lost_impulses += impl().mover.sleepers().add_weight(i, time(), 1.0);
+        statistics.lost_impulses += impl().mover.add_weight(i, time(), 1.0);
         population.store().wake(i);
     }
     statistics.asleep = 0;

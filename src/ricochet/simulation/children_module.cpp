@@ -9,9 +9,7 @@
 namespace ricochet {
 
 ChildrenModule::ChildrenModule(const ModuleParts& parts)
-    : parts_(parts),
-      offspring_({parts.emitters, parts.scene, parts.share, parts.population.memory()},
-                 {parts.options.max_depth, parts.options.most_particles}) {
+    : parts_(parts), offspring_({parts.emitters, parts.scene, parts.share, parts.population.memory(), parts.options}) {
     parts.observers.offspring = &offspring_;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "ricochet/core/algorithms.h"
@@ -43,7 +42,7 @@ CloudMotion::CloudMotion(const std::vector<Emitter>& emitters, ParticleStore& st
       has_children_(emitters.size(), 0) {
     for (const Emitter& emitter : emitters) {
         const auto& parent = emitter.description().parent;
-        if (!parent || !parent->cloud) continue;
+        if (!is_cloud(emitter.description())) continue;
         has_children_[parent->emitter] = 1;
         if (parent->recursive) has_children_[emitter.number()] = 1;
     }
@@ -72,67 +71,56 @@ bool CloudMotion::is_parent(std::size_t i) const {
 }
 
 const char* CloudMotion::fault_of(std::size_t i) const {
-    return is_sound(i) ? nullptr : "a particle of an unknown cloud";
-}
-
-bool CloudMotion::is_sound(std::size_t i) const {
-    if (!has_parent(i)) return true;
+    if (!has_parent(i)) return nullptr;
     const std::uint32_t emitter = store_.particles().origin[i].emitter;
-    if (emitter >= emitters_.size() || members_[i].parent >= store_.next_id() || !is_finite(members_[i].offset))
-        return false;
-    const auto& parent = emitters_[emitter].description().parent;
-    return parent && parent->cloud;
+    const bool is_sound = emitter < emitters_.size() && is_cloud(emitters_[emitter].description()) &&
+                          members_[i].parent < store_.next_id() && is_finite(members_[i].offset);
+    return is_sound ? nullptr : "a particle of an unknown cloud";
 }
 
 void CloudMotion::compact(const std::vector<std::uint8_t>& keep) { keep_marked(members_, keep); }
 
-void CloudMotion::before_generation(const ParticleRange& spawn_generation, const TimeSpan& /*step*/) {
+void CloudMotion::before_generation(const ParticleRange& generation, const TimeSpan& /*step*/) {
     const Particles& particles = store_.particles();
-    starts_.resize(spawn_generation.size());
-    for (std::size_t i = spawn_generation.begin; i < spawn_generation.end; ++i) {
-        if (is_parent(i)) starts_[i - spawn_generation.begin] = {particles.position[i], particles.velocity[i]};
+    starts_.resize(generation.size());
+    for (std::size_t i = generation.begin; i < generation.end; ++i) {
+        if (is_parent(i)) starts_[i - generation.begin] = {particles.position[i], particles.velocity[i]};
     }
 }
 
 /// Records the paths of parents that are not in a cloud themselves.
-void CloudMotion::note_tracks(const ParticleRange& spawn_generation, const TimeSpan& step,
+void CloudMotion::note_tracks(const ParticleRange& generation, const TimeSpan& step,
                               const std::vector<BlockRecord>& blocks) {
-    std::vector<ContactRecord> all;
-    for (const BlockRecord& block : blocks) {
-        all.insert(all.end(), block.contact_records.begin(), block.contact_records.end());
-    }
-    const RecordsByParticle records(std::move(all));
+    const RecordsByParticle records(joined(blocks, &BlockRecord::contact_records));
     const Particles& particles = store_.particles();
-    for (std::size_t i = spawn_generation.begin; i < spawn_generation.end; ++i) {
+    for (std::size_t i = generation.begin; i < generation.end; ++i) {
         if (!is_parent(i) || has_parent(i)) continue;
         const std::uint64_t id = particles.id[i];
-        tracks_[id] = {
-            flight_knots(particles, i, starts_[i - spawn_generation.begin], step.begin, step.end, records.of(id)),
-            has_ended(particles, i, step.end)};
+        tracks_[id] = {flight_knots(particles, i, starts_[i - generation.begin], step.begin, step.end, records.of(id)),
+                       has_ended(particles, i, step.end)};
     }
 }
 
 /// Returns the cloud particles of the generation, grouped by their depth below a parent that is not in a cloud.
-std::vector<std::vector<std::size_t>> CloudMotion::levels_of(const ParticleRange& spawn_generation) const {
+std::vector<std::vector<std::size_t>> CloudMotion::levels_of(const ParticleRange& generation) const {
     std::vector<std::size_t> all;
-    for (std::size_t i = spawn_generation.begin; i < spawn_generation.end; ++i) {
+    for (std::size_t i = generation.begin; i < generation.end; ++i) {
         if (has_parent(i) && !store_.is_fixed(i)) all.push_back(i);
     }
-    const auto generation = [&](std::size_t i) { return store_.particles().origin[i].generation; };
-    std::stable_sort(all.begin(), all.end(),
-                     [&](std::size_t a, std::size_t b) { return generation(a) < generation(b); });
+    const auto depth = [&](std::size_t i) { return store_.particles().origin[i].generation; };
+    std::stable_sort(all.begin(), all.end(), [&](std::size_t a, std::size_t b) { return depth(a) < depth(b); });
     std::vector<std::vector<std::size_t>> levels;
     for (std::size_t k = 0; k < all.size(); ++k) {
-        if (k == 0 || generation(all[k]) != generation(all[k - 1])) levels.emplace_back();
+        if (k == 0 || depth(all[k]) != depth(all[k - 1])) levels.emplace_back();
         levels.back().push_back(all[k]);
     }
     return levels;
 }
 
-void CloudMotion::after_substep(const ParticleRange& spawn_generation, const TimeSpan& step,
+void CloudMotion::after_substep(const ParticleRange& generation, const TimeSpan& step,
                                 std::vector<BlockRecord>& blocks) {
-    note_tracks(spawn_generation, step, blocks);
-    for (const std::vector<std::size_t>& level : levels_of(spawn_generation)) {
+    note_tracks(generation, step, blocks);
+    for (const std::vector<std::size_t>& level : levels_of(generation)) {
         const std::size_t first = blocks.size();
         blocks.resize(first + blocks_of(level.size()));
         std::vector<Track> tracks(level.size());
@@ -158,7 +146,7 @@ void CloudMotion::move_child(std::size_t i, const TimeSpan& step, MoveScratch& s
     Journey journey{i, std::max(step.begin, particles.birth_time[i]), std::min(step.end, death)};
     if (is_parent(i)) {
         journey.track = &track;
-        track.knots.push_back({journey.now, particles.position[i], particles.velocity[i], particles.velocity[i]});
+        track.add(journey.now, particles, i);
     }
     const auto parent = tracks_.find(members_[i].parent);
     const bool is_alone = parent == tracks_.end() || follow(journey, parent->second, scratch, record);
@@ -170,22 +158,14 @@ void CloudMotion::move_child(std::size_t i, const TimeSpan& step, MoveScratch& s
             free_mover_.move_one(i, {journey.now, journey.until}, scratch, record);
             journey.now = journey.until;
         }
-        if (journey.track != nullptr) {
-            const std::span<const ContactRecord> own(scratch.records.begin() + static_cast<std::ptrdiff_t>(first),
-                                                     scratch.records.end());
-            for (const ContactRecord& hit : own) {
-                track.knots.push_back({hit.time, hit.position, hit.velocity_before, hit.velocity_after});
-            }
-        }
+        if (journey.track != nullptr) add_impacts(track.knots, std::span(scratch.records).subspan(first));
     }
     if (journey.track == nullptr) return;
     track.ends = has_ended(particles, i, step.end);
-    if (particles.absorbed[i] != 0) return;
-    track.knots.push_back({journey.now, particles.position[i], particles.velocity[i], particles.velocity[i]});
+    if (particles.absorbed[i] == 0) track.add(journey.now, particles, i);
 }
 
-/// Moves the child along its parent's path. Returns true if the parent's life has ended, so that the child continues
-/// alone.
+/// Moves the child along its parent's path. Returns true if the parent's life has ended, and the child is alone.
 bool CloudMotion::follow(Journey& journey, const Track& parent, MoveScratch& scratch, BlockRecord& record) {
     const std::vector<FlightKnot>& knots = parent.knots;
     for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
@@ -235,7 +215,7 @@ void CloudMotion::add_forces(Journey& journey, const FlightKnot& from, const Fli
     } else {
         const double held_for = to.time > from.time ? to.time - from.time : response_->rules().settings.time_step;
         const CloudMember member = member_of(i, from, to);
-        mover_.apply_velocity_change(i, change, to.time, held_for, member, scratch);
+        mover_.apply_velocity_change(i, change, to.time, held_for, &member, scratch);
     }
     if (journey.track == nullptr) return;
     journey.track->knots.push_back({to.time, particles.position[i], before, particles.velocity[i]});
@@ -257,13 +237,8 @@ void CloudMotion::fly_piece(Journey& journey, const CloudMember& member, double 
     mover_.move_one(i, {begin, until}, scratch, record, &lead);
     journey.now = until;
     if (journey.track == nullptr) return;
-    for (std::size_t k = first; k < scratch.records.size(); ++k) {
-        const ContactRecord& hit = scratch.records[k];
-        journey.track->knots.push_back({hit.time, hit.position, hit.velocity_before, hit.velocity_after});
-    }
-    if (particles.absorbed[i] != 0) return;
-    const Vec3& velocity = particles.velocity[i];
-    journey.track->knots.push_back({until, particles.position[i], velocity, velocity});
+    add_impacts(journey.track->knots, std::span(scratch.records).subspan(first));
+    if (particles.absorbed[i] == 0) journey.track->add(until, particles, i);
 }
 
 /// Releases particle i from its cloud at a time, in s.
@@ -287,8 +262,7 @@ void CloudMotion::retire(double time) {
     for (const std::vector<std::size_t>& level : levels_of({0, store_.size()})) {
         for (const std::size_t i : level) {
             const auto parent = parents.find(members_[i].parent);
-            const bool stays =
-                parent != parents.end() && retirement_.removal_reason(parent->second, time) == RemovalReason::none;
+            const bool stays = parent != parents.end() && retirement_.removal_reason(parent->second, time) == nullptr;
             if (!stays) part(i, time);
         }
     }

@@ -1,12 +1,11 @@
 /// \file
-/// Private to the simulation: clouds. The children of a cloud move with their parent. A child is moved after its
-/// parent, along the parent's path.
+/// Private to the simulation: clouds. The children of a cloud move with their parent, along its path and after it.
 ///
 /// Between two consecutive knots, the path of a parent is a cubic polynomial (flight_knots.h). The path of a child is
-/// the sum of the parent's path and of the child's own motion about the parent. This sum is divided into pieces, and
-/// each piece is swept and certified like the path of any particle. A child bounces off surfaces on its own. After a
-/// bounce, the response integrates the accelerations of both motions. At an impact of the parent, the child's velocity
-/// changes by the same amount as the parent's velocity.
+/// the sum of the parent's path and of the child's own motion about the parent. It is divided into pieces, which are
+/// swept and certified like the path of any particle. A child bounces off surfaces on its own. After a bounce, the
+/// response integrates the accelerations of both motions. At an impact of the parent, the child's velocity changes by
+/// the same amount as the parent's.
 #pragma once
 
 #include <cstddef>
@@ -29,8 +28,7 @@ namespace ricochet {
 /// The clouds of a run.
 class CloudMotion final : public Module {
 public:
-    /// mover: the mover of all other particles. It also moves particles that leave a cloud. All arguments must outlive
-    /// the object.
+    /// mover: moves all other particles, and those that leave a cloud. All arguments must outlive the object.
     CloudMotion(const std::vector<Emitter>& emitters, ParticleStore& store, ActiveMover& mover,
                 const Retirement& retirement);
 
@@ -38,8 +36,7 @@ public:
     [[nodiscard]] bool has_parent(std::size_t i) const { return members_[i].parent != kNobody; }
     /// Returns the id of each particle's parent, or -1 for a particle outside clouds.
     [[nodiscard]] std::vector<std::int64_t> parents() const;
-    /// Returns the path of a parent in this step. The path is empty if the particle is not a parent or has not moved
-    /// yet.
+    /// Returns the path of a parent in this step; empty if the particle is not a parent or has not moved yet.
     [[nodiscard]] std::span<const FlightKnot> knots_of(std::uint64_t id) const;
 
     /// Makes an appended particle move with its parent.
@@ -48,8 +45,7 @@ public:
     void begin_step(const TimeSpan& /*step*/) override { tracks_.clear(); }
     /// Stores the states of parents before they move.
     void before_generation(const ParticleRange& generation, const TimeSpan& step) override;
-    /// Moves the cloud particles of a generation after all its other particles. Parents are moved before their
-    /// children.
+    /// Moves the cloud particles of a generation after its other particles, parents before their children.
     void after_substep(const ParticleRange& generation, const TimeSpan& substep,
                        std::vector<BlockRecord>& blocks) override;
     /// Releases or ends the children of parents that leave the bounds.
@@ -69,6 +65,11 @@ private:
     struct Track {
         std::vector<FlightKnot> knots;
         bool ends = false;  ///< true if the particle's life ends at the last knot
+
+        /// Adds the present state of a particle, at a time, in s.
+        void add(double time, const Particles& particles, std::size_t i) {
+            knots.push_back({time, particles.position[i], particles.velocity[i], particles.velocity[i]});
+        }
     };
     struct Journey;
 
@@ -77,12 +78,10 @@ private:
         const auto member = [&](Member& m) { a(m.parent), a(m.offset); };
         archive_entries(a, members_, member, store_.size());
     }
-    [[nodiscard]] bool is_sound(std::size_t i) const;
     [[nodiscard]] const CloudRule& rule_of(std::size_t i) const;
     [[nodiscard]] bool is_parent(std::size_t i) const;
-    [[nodiscard]] std::vector<std::vector<std::size_t>> levels_of(const ParticleRange& spawn_generation) const;
-    void note_tracks(const ParticleRange& spawn_generation, const TimeSpan& step,
-                     const std::vector<BlockRecord>& blocks);
+    [[nodiscard]] std::vector<std::vector<std::size_t>> levels_of(const ParticleRange& generation) const;
+    void note_tracks(const ParticleRange& generation, const TimeSpan& step, const std::vector<BlockRecord>& blocks);
     void move_child(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record, Track& track);
     [[nodiscard]] bool follow(Journey& journey, const Track& parent, MoveScratch& scratch, BlockRecord& record);
     [[nodiscard]] CloudMember member_of(std::size_t i, const FlightKnot& from, const FlightKnot& to) const;

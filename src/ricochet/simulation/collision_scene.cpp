@@ -12,8 +12,7 @@
 namespace ricochet {
 namespace {
 
-/// Returns true if no collider intersects the segment. Colliders in moving frames are tested in their poses at a time,
-/// in s.
+/// Returns true if no collider intersects the segment. Moving colliders are tested in their poses at a time, in s.
 bool is_clear_at(const MovingColliders& bodies, double time, const Vec3& from, const Vec3& to) {
     ContactScratch scratch;
     if (!is_clear(bodies.world(kWorldBody), scratch, from, to)) return false;

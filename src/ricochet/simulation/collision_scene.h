@@ -23,9 +23,8 @@ namespace ricochet {
 /// The colliders of a run in all their frames. A collider without a frame is at rest in the world.
 class CollisionScene {
 public:
-    /// frames: null if there are no moving frames. They are copied, because the paths of bodies belong to one run.
-    /// chord_margin: chord margin of the colliders at rest, see CollisionWorld. Throws InputError like CollisionWorld
-    /// and MovingColliders.
+    /// frames: null without moving frames; copied, because the paths of bodies belong to one run. chord_margin: of the
+    /// colliders at rest, see CollisionWorld. Throws InputError like CollisionWorld and MovingColliders.
     CollisionScene(std::vector<ColliderDescription> colliders, std::vector<Material> materials,
                    const std::shared_ptr<const FrameTree>& frames, double chord_margin);
 
@@ -49,14 +48,12 @@ public:
 
     /// Returns the deepest overlap of a particle with a surface at its birth.
     [[nodiscard]] std::optional<Overlap> overlap_of(const Particle& particle) const;
-    /// Returns true if, at the child's birth, no surface lies between the parent and the child and the child overlaps
-    /// no surface.
+    /// Returns true if, at its birth, a child overlaps no surface, and none lies between it and its parent.
     [[nodiscard]] bool has_room_beside(const Particle& parent, const Particle& child) const;
 
     // Single colliders and surfaces.
 
-    /// Returns the collision world of the frame in which a collider is at rest. For a deforming mesh it is the world of
-    /// the colliders at rest.
+    /// Returns the collision world in which a collider is at rest; for a deforming mesh the world of those at rest.
     [[nodiscard]] const CollisionWorld& world_of(std::size_t collider) const;
     /// Returns the mesh of a collider, in the collider's frame, at a time, in s. A plane has no mesh.
     [[nodiscard]] std::optional<TriangleMesh> mesh_of(std::size_t collider, double time) const;

@@ -99,8 +99,7 @@ std::vector<std::uint32_t> ContactIslands::expect_reactions(Work& work) {
     spheres.reserve(work.members.size());
     for (const ContactIslandMember& member : work.members) spheres.push_back({member.radius, member.reach, 0.0});
     const auto collect = [&](Sphere& sphere, const Sphere& by) {
-        // The reach of a large sphere includes a margin in proportion to its radius. The margin is subtracted, because
-        // it does not push small spheres.
+        // Subtracts the margin in the reach of a large sphere, because it does not push small spheres.
         const bool is_large = by.radius > kLargeSphere * sphere.radius;
         const double beside = is_large ? kNetworkReach * (by.radius - sphere.radius) : 0.0;
         sphere.loaded = std::max(sphere.loaded, kExpectedPush * (by.reach - beside));

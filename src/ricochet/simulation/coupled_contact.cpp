@@ -1,5 +1,4 @@
-// Coupled particles that collide with surfaces or spheres: support accelerations for the plan, deviations from the
-// plan, and velocity corrections.
+// Coupled particles that hit surfaces or spheres: support accelerations, deviations from plan, velocity corrections.
 #include <algorithm>
 #include <cstddef>
 #include <span>
@@ -11,8 +10,7 @@
 namespace ricochet {
 namespace {
 
-/// Records the flown path if the response has not reported it. The path is assumed to be smooth between the start and
-/// the end.
+/// Records the flown path, assumed to be smooth, if the response has not reported it.
 void note_flown(const Flight& plan, const MovingParticle& moved, std::vector<FlownPiece>& flown) {
     if (!flown.empty()) return;
     const ForceInput& from = plan.start;
@@ -67,16 +65,12 @@ void ActiveMover::apply_correction(std::span<const CoupledMotion::VelocityCorrec
                                    std::vector<BlockRecord>& blocks) {
     const std::size_t first = blocks.size();
     blocks.resize(first + blocks_of(corrections.size()));
-    Particles& particles = parts_.store.particles();
     parallel_for_blocks(corrections.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         MoveScratch scratch;
         prepare(scratch);
         for (std::size_t k = begin; k < end; ++k) {
-            const std::uint32_t i = corrections[k].particle;
-            MovingParticle particle = load(i, part.end);
-            response_.apply_correction(particle, corrections[k].change, part.end - part.begin, scratch);
-            particles.velocity[i] = particle.state.velocity;
-            particles.spin[i] = parts_.store.spin_of(i, particle);
+            const auto& [i, change] = corrections[k];
+            apply_velocity_change(i, change, part.end, part.end - part.begin, nullptr, scratch);
         }
         record_lists(scratch, blocks[first + block]);
     });

@@ -28,8 +28,7 @@ constexpr int kMostWorse = 3;
 /// rule of the search for the best prediction.
 constexpr double kWorthCutting = 0.5;
 
-/// Number of halvings in a row without improvement after which the search stops. Local, because the best prediction is
-/// used.
+/// Number of halvings in a row without improvement after which the search stops, and uses the best prediction.
 constexpr int kMostVainCuts = 2;
 
 /// Tolerances of the solution of a step.
@@ -39,12 +38,10 @@ struct Closeness {
 };
 /// Tolerances while the supports are not known yet. A larger compliance of friction needs fewer iterations.
 constexpr Closeness kRough{kRoughNewtonTolerance, kRoughFrictionYield};
-/// Tolerances after the supports are known. With ten times this compliance of friction, springs of 1e8 N/m gained 0.8 J
-/// in a step.
+/// Tolerances after the supports are known. With ten times this yield, springs of 1e8 N/m gained 0.8 J in a step.
 constexpr Closeness kClose{kNewtonTolerance, kFrictionYield};
 
-/// Returns errors of displacements, in m. The error of a member is its displacement under the supports found for a
-/// step, minus its predicted displacement.
+/// Returns each member's displacement, in m, under the supports found for a step, minus its predicted displacement.
 std::vector<Vec3> missed_paths(const SystemStep& step, std::span<const SupportConstraints> found) {
     std::vector<Vec3> missed(found.size());
     for (std::size_t k = 0; k < found.size(); ++k) {
@@ -85,14 +82,15 @@ bool is_in_contact(const Particles& particles, std::size_t i) {
 }  // namespace
 
 CoupledMotion::CoupledMotion(std::vector<Spring> springs, std::vector<ParticlesForceEntry> mutual, SystemSolver solver,
-                             const ForceField& forces, const Integrator& integrator, const Terms& terms)
+                             const ForceField& forces, const Integrator& integrator, double time_step,
+                             bool knows_implicit)
     : springs_(std::move(springs)),
       mutual_(std::move(mutual)),
       solver_(std::move(solver)),
       integrator_(integrator),
-      time_step_(terms.time_step),
+      time_step_(time_step),
       system_(forces, springs_, mutual_),
-      energy_(system_, springs_, terms.knows_implicit) {}
+      energy_(system_, springs_, knows_implicit) {}
 
 void CoupledMotion::bind(const Particles& particles) { springs_.bind(particles.id); }
 
@@ -111,9 +109,9 @@ std::vector<std::uint32_t> CoupledMotion::members_of(const Particles& particles,
     return members;
 }
 
-/// Returns the accelerations by which contacts support members at the start of the step. These accelerations are
-/// assumed to last for the whole step. Without them, a supported member would fall through its support in the plan.
-/// Other members would feel this fall, and the system could not come to rest.
+/// Returns the accelerations by which contacts support members at the start of the step. They are assumed to last for
+/// the whole step. Otherwise a supported member would fall through its support in the plan. Other members would feel
+/// this fall, and the system could not come to rest.
 std::vector<Vec3> CoupledMotion::expected_reactions(const Particles& particles,
                                                     const ContactAcceleration& contact_acceleration) const {
     const std::vector<Vec3>& x = system_.positions();
@@ -153,8 +151,8 @@ double CoupledMotion::plan(const Particles& particles, double time, double durat
 
 void CoupledMotion::plan_flights(const SystemStep& step) {
     const bool holds = holds_coupling(integrator_.kind);
-    const IntegratorKind kind = solver_ ? IntegratorKind::rk4 : integrator_.kind;  // the path of a custom solver is a
-                                                                                   // cubic
+    // The path of a custom solver is a cubic, like that of rk4.
+    const IntegratorKind kind = solver_ ? IntegratorKind::rk4 : integrator_.kind;
     coupled_.resize(system_.size());
     deviations_.reset(system_.size(), kind);
     parallel_for_blocks(system_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -208,7 +206,7 @@ SystemStep CoupledMotion::stepped(double duration) {
 /// Returns a step whose equations include the supports. If the supports do not settle, half of the duration is tried,
 /// because springs then transmit less motion between members. The next substep starts with the duration that settled
 /// last. If half of the duration is not better, the step is accepted and counts as unsolved. An example is a point on
-/// an edge, because each of the two faces leads the point to the other face.
+/// an edge, which each of the two faces leads to the other.
 SystemStep CoupledMotion::step_with_supports(double duration, const Particles& particles,
                                              const PlannedContacts& contacts) {
     std::vector<Vec3> spins;
@@ -237,9 +235,8 @@ SystemStep CoupledMotion::step_with_supports(double duration, const Particles& p
     return step;
 }
 
-/// Predicts the supports in a step. The supports depend on the motion in the step, and the motion depends on the
-/// supports. The step is therefore solved repeatedly until it agrees with the prediction, and only then with the close
-/// tolerances.
+/// Predicts the supports in a step. Supports and motion depend on each other. The step is therefore solved repeatedly
+/// until it agrees with the prediction, and only then with the close tolerances.
 CoupledMotion::SupportPrediction CoupledMotion::predict(double duration, std::span<const Vec3> spins,
                                                         const PlannedContacts& contacts) const {
     SupportPrediction best;
@@ -269,8 +266,9 @@ CoupledMotion::SupportPrediction CoupledMotion::predict(double duration, std::sp
             held = find(kClose.least_compliance);
             continue;
         }
-        if (has_settled)
+        if (has_settled) {
             residual += residual_energy(system_, step, contacts.find_curvature_deviations(system_, step, found));
+        }
         ++worse;
         if (has_settled || best.held.empty() || residual < best.residual) {
             const double lost = lost_in(step);  // can be negative if members rebound from surfaces

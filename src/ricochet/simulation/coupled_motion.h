@@ -22,8 +22,8 @@ namespace ricochet {
 /// Returns the kinetic energy, in J, of the members of a system at the given velocities.
 [[nodiscard]] double kinetic_energy(const ParticleSystem& system, std::span<const Vec3> velocities);
 
-/// Adds up the energy that an integration method creates. The initial state, forces and surfaces are valid sources of
-/// energy. Any further energy is an error of the method. If the error is large, the motion has diverged.
+/// Adds up the energy that an integration method creates, in addition to the energy of the initial state, forces and
+/// surfaces. This energy is an error of the method. If it is large, the motion has diverged.
 class EnergyWatch {
 public:
     /// system must outlive the object. knows_implicit: true if an error message may recommend implicit_euler.
@@ -33,10 +33,9 @@ public:
     [[nodiscard]] double of(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities) const;
     /// Returns the largest energy, in J, that can result from rounding.
     [[nodiscard]] double least() const { return least_; }
-    /// Adds the energies of a planned step of the system. Throws DivergedError if the method has created too much
-    /// energy.
+    /// Adds the energies of a planned step. Throws DivergedError if the method has created too much energy.
     void watch(const SystemStep& step);
-    /// Saves or restores the sums. a: an archive of core/binary_archive.h.
+    /// Saves or restores the sums.
     template <class Archive>
     void archive(Archive& a) {
         a(given_), a(gained_), a(after_plan_), a(is_watching_);
@@ -60,34 +59,27 @@ private:
 /// bounces off surfaces. correct_velocities() and settle() process the results.
 class CoupledMotion {
 public:
-    /// Settings of the run.
-    struct Terms {
-        double time_step = 0.0;       ///< s
-        bool knows_implicit = false;  ///< true if an error message may recommend implicit_euler when the motion
-                                      ///< diverges
-    };
-    /// Throws InputError for invalid springs. forces must outlive the object.
+    /// Throws InputError for invalid springs. forces must outlive the object. time_step: of the run, in s.
+    /// knows_implicit: see EnergyWatch.
     CoupledMotion(std::vector<Spring> springs, std::vector<ParticlesForceEntry> mutual, SystemSolver solver,
-                  const ForceField& forces, const Integrator& integrator, const Terms& terms);
+                  const ForceField& forces, const Integrator& integrator, double time_step, bool knows_implicit);
 
     /// Returns true if particles may act on each other, or if a custom solver moves them.
     [[nodiscard]] bool is_active() const { return !is_disabled_ && (solver_ || !springs_.empty() || !mutual_.empty()); }
     /// Disables coupled motion, because another stage moves the particles. Springs are kept only for restored states.
     void disable() { is_disabled_ = true; }
-    /// Function that returns the acceleration, in m/s^2, of particle i in its present contact. `pull` is its
-    /// acceleration without the contact, in m/s^2.
+    /// Returns the acceleration, in m/s^2, of particle i in its present contact. pull: acceleration without it.
     using ContactAcceleration = std::function<Vec3(std::size_t i, const Vec3& pull)>;
 
     /// Must be called after particles have been added or removed.
     void bind(const Particles& particles);
     /// Plans the paths of the members from a time, in s, for at most `duration` seconds. Returns the planned duration,
-    /// in s. contacts: predicts the supports of members for the implicit method. contact_acceleration: used by methods
-    /// that do not keep coupling forces constant in a step. Throws DivergedError if the motion diverges.
+    /// in s. contacts: predicts supports for the implicit method. contact_acceleration: for methods that do not keep
+    /// coupling forces constant in a step. Throws DivergedError if the motion diverges.
     double plan(const Particles& particles, double time, double duration, const PlannedContacts& contacts,
                 const ContactAcceleration& contact_acceleration);
 
-    /// Sets a function that plan() calls between the iterations of the implicit method. plan() does not catch the
-    /// exceptions of the function. An empty function ends the calls.
+    /// Sets a function that plan() calls between the iterations of the implicit method. It may throw.
     void call_between(std::function<void()> between) { between_ = std::move(between); }
 
     /// Returns true if particle i is a member.
@@ -112,7 +104,6 @@ public:
     void add_deviation(std::size_t i, std::span<const FlownPiece> flown, const Vec3& velocity_change) {
         deviations_.record(slots_[i], flown, velocity_change);
     }
-
     /// Records a member that was planned together with its contacts. The forces on the member keep their values from
     /// the start of the step. velocity_change: velocity change by contacts, in m/s.
     void record_planned_contact(std::size_t i, const Vec3& velocity_change) {
@@ -135,8 +126,7 @@ public:
     /// Ends a step. Counts the step as unsolved if one of its substeps was not solved. Breaks overstretched springs.
     void settle(const Particles& particles);
 
-    /// Saves or restores the state between steps. a: an archive of core/binary_archive.h. bind() must be called after a
-    /// state is restored.
+    /// Saves or restores the state between steps. bind() must be called after a state is restored.
     template <class Archive>
     void archive(Archive& a) {
         springs_.archive(a);
@@ -146,8 +136,7 @@ public:
     }
 
     [[nodiscard]] const SpringNetwork& springs() const { return springs_; }
-    /// Returns the potential energy of the forces between particles, in J, or nothing if one of the forces has no
-    /// potential.
+    /// Returns the potential energy of the forces between particles, in J; nothing if one of them has no potential.
     [[nodiscard]] std::optional<double> mutual_energy(const Particles& particles, double time) const;
     /// Returns the number of unsolved steps. In an unsolved step, implicit equations were not solved to the tolerance,
     /// predicted supports did not settle, or dormand_prince exceeded its tolerance.
@@ -187,8 +176,7 @@ private:
     std::vector<Flight> flights_;         // of the members
     std::vector<CoupledMember> coupled_;  // coupling of each flight
     PlanDeviations deviations_;           // deviations of the members from their flights
-    double first_try_ = 0.0;  // s, tried first by an adaptive method, or by the implicit method if supports need
-                              // substeps; 0: unknown
+    double first_try_ = 0.0;              // s, duration that is tried first in the next substep; 0: unknown
     std::uint64_t unsolved_steps_ = 0;
     bool is_unsolved_ = false;    // true if a substep of the present step is unsolved
     std::uint32_t substeps_ = 0;  // number in the present step, for an adaptive method

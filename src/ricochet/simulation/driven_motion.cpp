@@ -90,8 +90,7 @@ std::vector<double> DrivenMotion::shares_of(std::span<const ColliderLoad> previe
 }
 
 double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
-    // Slow impacts are ignored, because a resting particle lands on its body again after every change of the body's
-    // velocity.
+    // Slow impacts are ignored, because resting particles land again after every change of the body's velocity.
     std::erase_if(preview, [&](const ColliderLoad& load) {
         return !load.impact || load.approach <= slow_ || !loads_on_bodies().body_of(load);
     });
@@ -121,9 +120,8 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
                        changes_velocity(load, before[body].wrench(), tallies[body], contacts_[body]);
             });
         if (is_too_much) return end_of(before, preview[first - 1].time, preview[first].time);
-        // A particle that waits for a body moves with the body's surface and not in the direction of its own momentum.
-        // A couple on the body then conserves the angular momentum. The couple of a heavy particle turns the body
-        // strongly, so the substep ends soon.
+        // The couple of a heavy particle that waits for the body turns the body strongly, see end_of_waits(), so the
+        // substep ends soon.
         if (is_heavy && substeps_ < kManyParts) {
             const double until = next < preview.size() ? preview[next].time : end;
             return std::min(end, soon_after_impact(preview[first].time, until));
@@ -133,8 +131,7 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
 }
 
 RestingLoad DrivenMotion::resting_load_on(std::size_t body, std::span<const ColliderLoad> preview, double until) const {
-    // If the substep is not cut before the end of the plan, all loads of the preview are included. Rounding may give a
-    // load a time slightly after that end.
+    // In a whole substep all loads count, because rounding may put the time of a load slightly after the end.
     const bool is_whole = until >= planned_end();
     return loads_on_bodies().resting_load_on(body, preview, is_whole ? std::numeric_limits<double>::infinity() : until);
 }
@@ -147,8 +144,8 @@ double DrivenMotion::substep_with_load(std::size_t body, std::span<const Collide
     return part > kLoadEndMargin && part < 1.0 - kLoadEndMargin ? part : 1.0;
 }
 
-/// Returns the velocity change, in m/s, that a wrench (N, N m) causes on a body in a duration, in s. For a rotation it
-/// is the change at the radius of gyration.
+/// Returns the velocity change, in m/s, of a body by a wrench (N, N m) in a duration, in s, also at the radius of
+/// gyration.
 double DrivenMotion::change_by(std::size_t body, const Wrench& load, double duration) const {
     const Wrench whole{duration * load.impulse, duration * load.moment};
     return std::sqrt(2.0 * bodies_[body].quadratic_energy(whole) / bodies_[body].description().mass);
@@ -182,8 +179,7 @@ double DrivenMotion::most_change(std::size_t body) const {
 
 DrivenMotion::Fit DrivenMotion::fit_of(std::size_t body, const RestingLoad& resting_load, double duration) const {
     const Wrench& planned = loads_[body];
-    // Divides by at least a minimum duration. Otherwise a slow impact would count as a large lasting force in a substep
-    // that impacts have shortened.
+    // In a substep that impacts have shortened, a slow impact must not count as a large lasting force.
     const double lasts = std::max(duration, kShortestLoad * shortest_substep_);
     const Wrench back{resting_load.wrench.impulse / lasts, resting_load.wrench.moment / lasts};
     const Wrench lacks{back.impulse - planned.impulse, back.moment - planned.moment};
@@ -210,8 +206,7 @@ bool DrivenMotion::is_cut_in_contact(std::span<const ColliderLoad> preview, doub
     return false;
 }
 
-/// Begins a round of planning. Returns false if the reaction of bodies to impacts differs from the reaction in the
-/// preview.
+/// Begins a round of planning. Returns false if bodies react otherwise to impacts than in the preview.
 bool DrivenMotion::begin_round(std::span<const ColliderLoad> preview, double end, int round) {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         if (round % kMostLoadRounds == 0) relaxations_[k].begin_search();
@@ -306,9 +301,8 @@ void DrivenMotion::accept(std::span<const ColliderLoad> preview, double end) {
     limit_next_substep(duration);
 }
 
-/// Plans bodies without resting loads if no load fits even the shortest substep. An example is a body that a much
-/// heavier particle jams. Each impact is then resolved with the body's inverse mass. Returns false if no body must be
-/// planned in this manner.
+/// Plans bodies without resting loads if no load fits even the shortest substep, for example a body that a much heavier
+/// particle jams. Impacts then see the body's inverse mass. Returns false if no body needs this.
 bool DrivenMotion::plan_without_loads(std::span<const ColliderLoad> preview, double begin, double end) {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         if (!gains_energy(k, preview, end)) continue;
@@ -346,8 +340,7 @@ void DrivenMotion::follow(std::span<const ColliderLoad> loads) {
         const double lain = path.end - path.begin;
         contacts_[k].add(touching[k]);
         contacts_[k].taken += wrenches[k];
-        // Uses the loads of the path. They differ from the loads for the next plan if the search for loads was given
-        // up.
+        // Uses the loads of the path, which are not those of the next plan if the search was given up.
         const Wrench& load = paths_.load(k);
         contacts_[k].taken += {-lain * load.impulse, -lain * load.moment};
         bodies_[k].follow(path, load, wrenches[k]);

@@ -30,8 +30,7 @@ namespace ricochet {
 /// Paths of bodies in the frame tree, and the mobility of their colliders. All bodies have the same substeps.
 class BodyPaths {
 public:
-    /// frames: contains the frames of the bodies. colliders: empty if no collider moves. All arguments must outlive the
-    /// object.
+    /// frames: with those of the bodies. colliders: empty if none moves. All arguments must outlive the object.
     BodyPaths(const std::vector<DrivenBody>& bodies, FrameTree* frames, MovingColliders& colliders,
               const ForceField& forces);
 
@@ -41,22 +40,19 @@ public:
     /// Returns the load that the planned path of a body contains, in N and N m.
     [[nodiscard]] const Wrench& load(std::size_t body) const { return loads_[body]; }
 
-    /// Plans the paths over [begin, end], in s, with a load on each body. The new paths replace a plan that was not
-    /// followed.
+    /// Plans the paths over [begin, end], in s, with a load on each body. Replaces a plan that was not followed.
     void plan(const std::vector<Wrench>& loads, double begin, double end);
     /// Ends the plan at an earlier time, in s.
     void end_at(double time);
     /// Marks the plan as followed.
     void set_followed() { is_planned_ = false; }
-    /// Selects the substep that begins at a time, in s, for children, which repeat the substeps of this step. Returns
-    /// the end of the substep, in s.
+    /// Selects the substep that begins at a time, in s, for children, which repeat substeps. Returns its end, in s.
     double repeat(double time);
     /// Sets the time, in s, before which paths are no longer needed.
     void set_oldest(double time) { oldest_ = time; }
 
-    /// Sets factors on the inverse masses and inertias of the bodies. Impacts that are simultaneous, or too close in
-    /// time to be separated, share their effect. The body then reacts to each of these impacts as if all of them acted
-    /// together. An empty list sets all factors to 1.
+    /// Sets factors on the bodies' inverse masses and inertias, 1 beyond the list. Impacts that are too close in time
+    /// to be separated share their effect: the body reacts to each of them as if all of them acted together.
     void set_shares(std::vector<double> shares);
     [[nodiscard]] const std::vector<double>& shares() const { return shares_; }
     /// Returns one empty impact tally per body, for its planned path.
@@ -105,19 +101,16 @@ public:
     [[nodiscard]] bool is_active() const { return !bodies_.empty(); }
     [[nodiscard]] const std::vector<DrivenBody>& bodies() const { return bodies_; }
 
-    /// Returns the latest possible end, in s, of a substep that starts at `begin`, in s. The result is at most `end`,
-    /// in s.
+    /// Returns the latest possible end, in s, of a substep from `begin` on; at most `end`, in s.
     [[nodiscard]] double next_substep_end(double begin, double end) const;
-    /// Plans the paths of the bodies over [begin, end], in s. The new paths replace a plan that was not followed. Paths
-    /// before `oldest`, in s, are no longer needed.
+    /// Plans the bodies' paths over [begin, end], in s. Replaces a plan that was not followed. oldest: see BodyPaths.
     void plan(double begin, double end, double oldest);
-    /// Returns the time, in s, at which the planned substep must end because of impacts. preview: loads on the bodies
-    /// in the substep.
+    /// Returns the time, in s, at which impacts end the planned substep. preview: loads in it.
     [[nodiscard]] double cut_by(std::vector<ColliderLoad> preview) const;
     /// Plans the substep again if a load that rests on a body is heavy compared with the body. The new plan contains
-    /// the resting loads of the preview. It ends earlier if these loads would change the velocity of a body by much.
-    /// cut: result of cut_by(). round: number of earlier calls for this substep. Returns false if the plan is accepted.
-    /// The plan then ends at the cut.
+    /// the resting loads of the preview, and ends earlier if they change a body's velocity by much. cut: result of
+    /// cut_by(). round: number of earlier calls for this substep. Returns false if the plan, up to the cut, is
+    /// accepted.
     [[nodiscard]] bool plan_again(std::span<const ColliderLoad> preview, double cut, int round);
     /// Returns the end of the plan, in s.
     [[nodiscard]] double planned_end() const { return paths_.planned(0).end; }
@@ -127,11 +120,9 @@ public:
     void take(std::span<const ColliderLoad> loads);
     /// Begins a step. The loads that rested on the bodies in the last step become planned loads.
     void begin_step();
-    /// Returns the energy, in J, that a body gains from a load in addition to ColliderLoad::work, because the load
-    /// changes the body's velocity.
+    /// Returns the energy, in J, that a body gains by its change of velocity, in addition to ColliderLoad::work.
     [[nodiscard]] double work_by_yielding(const ColliderLoad& load) const;
-    /// Selects the substep that begins at a time, in s, for children, which repeat the substeps of this step. Returns
-    /// the end of the substep, in s.
+    /// See BodyPaths::repeat().
     double repeat_substep(double time) { return paths_.repeat(time); }
 
     /// Saves or restores the motion of the bodies. a: an archive of core/binary_archive.h.

@@ -23,19 +23,16 @@ namespace {
 
 constexpr double kExplodes = std::numeric_limits<double>::infinity();
 
-/// Largest number of steps of a trial. After so many steps, a growth that reaches a hundredth in a long run is far
-/// above rounding errors.
+/// Largest number of steps of a trial, in which a growth to a hundredth in a long run is far above rounding.
 constexpr std::size_t kMostTrialSteps = 4096;
 
-/// Largest growth of the energy without a warning, divided by the largest kinetic energy. Local, because it decides
-/// only about a warning.
+/// Largest gain of energy, as a part of the largest kinetic energy, without a warning. Local: only for a warning.
 constexpr double kLargestGain = 0.01;
 
 /// Rounding error of energies, divided by the largest potential energy. Local, because it decides only about a warning.
 constexpr double kEnergyNoise = 1e-11;
 
-/// Largest numbers of particles that are examined and of particles that are tried. The tried particles are those at
-/// whose positions forces vary most.
+/// Largest numbers of particles that are examined, and that are tried because forces vary most at their positions.
 constexpr std::size_t kMostSubjects = 256;
 constexpr std::size_t kMostTried = 4;
 
@@ -61,8 +58,7 @@ struct TrialForces {
     std::string names;  ///< list of the forces that vary
 };
 
-/// Returns the forces of a setup. Returns nothing if no force varies, or if the effect of a force on energies is not
-/// known.
+/// Returns the forces of a setup; nothing if none varies, or if the effect of one on energies is not known.
 std::optional<TrialForces> trial_forces(const SimulationSetup& setup) {
     std::vector<std::unique_ptr<Force>> borrowed;
     TrialForces forces;
@@ -91,8 +87,7 @@ struct Subject {
     double rate = 0.0;                                          ///< result of rate_at() at the start, in 1/s^2
 };
 
-/// Returns the larger of two rates, in 1/s^2: the change of the acceleration per distance, and the square of its change
-/// per velocity.
+/// Returns the larger of two rates, in 1/s^2: change of acceleration per distance, and its squared change per velocity.
 double rate_at(const ForceField& field, const ForceInput& state) {
     // Local: the step of a numerical derivative that serves only warnings.
     constexpr double kDifference = 1e-6;
@@ -292,8 +287,7 @@ TrialLength length_of(const SimulationSetup& setup, const Subject& subject) {
     return length;
 }
 
-/// Returns the name of an integrator that conserves the energy in the trial with the same step. Returns an empty name
-/// if no such integrator is known.
+/// Returns the name of an integrator that conserves the energy in the trial, with the same step; empty if unknown.
 std::string_view better_than(const Integrator& integrator, const SimulationSetup& setup, const EnergyTrial& trial,
                              const TrialLength& length) {
     const SimulationOptions& options = setup.options;

@@ -15,8 +15,7 @@ namespace {
 /// Members per unit of parallel work.
 constexpr std::size_t kWatchBlock = 256;
 
-/// Returns an energy, in J, that can result from rounding. It is the energy of all springs when each of them is
-/// stretched by a negligible part of its length.
+/// Returns an energy, in J, that can result from rounding: that of springs stretched by negligible parts.
 double negligible_energy(const SpringNetwork& island) {
     double sum = 0.0;
     for (const Spring& spring : island.springs()) {
@@ -43,8 +42,7 @@ double EnergyWatch::of(const std::vector<Vec3>& positions, const std::vector<Vec
     return kinetic_energy(system_, velocities) + system_.spring_energy(positions);
 }
 
-// The trapezoid rule gives the work of a step. Its error can be as large as the work, so the magnitude of the work
-// counts as given energy.
+// The error of the trapezoid rule can be as large as the work of a step, so the work's magnitude counts as given.
 void EnergyWatch::watch(const SystemStep& step) {
     const double before = of(system_.positions(), system_.velocities());
     const double after = of(step.positions, step.velocities);
@@ -58,8 +56,8 @@ void EnergyWatch::watch(const SystemStep& step) {
         pull += 2.0 * system_.expected_reaction(k);
         if (!step.mutual_start.empty()) pull += step.mutual_start[k];
         if (!step.mutual_start.empty()) pull += (step.mutual_end.empty() ? step.mutual_start : step.mutual_end)[k];
-        // Uses the displacement that the mean velocity gives. The path of forward Euler depends only on the velocity at
-        // the start. Along this path, forces on a particle at rest would do no work.
+        // Uses the displacement by the mean velocity. Along the path of forward Euler, which depends only on the
+        // velocity at the start, forces on a particle at rest would do no work.
         return 0.25 * step.duration * system_.mass(k) * dot(pull, v0 + v1);
     };
     const auto sum = [&](auto&& term) {

@@ -37,17 +37,21 @@ struct FlightKnot {
             (chord + (1.0 - s) * (1.0 - 3.0 * s) * begin + s * (2.0 - 3.0 * s) * end) / duration};
 }
 
-/// Returns the knots of particle i in a step. start: state of the particle at the start of the step. from, to: start
-/// and end of the step, in s. records: impacts of the particle, in the order of time. If an impact removes the
-/// particle, this impact is the last knot.
+/// Appends the impacts of a particle.
+inline void add_impacts(std::vector<FlightKnot>& knots, std::span<const ContactRecord> records) {
+    for (const ContactRecord& record : records) {
+        knots.push_back({record.time, record.position, record.velocity_before, record.velocity_after});
+    }
+}
+
+/// Returns the knots of particle i in a step. start: its state at the start. from, to: start and end of the step, in s.
+/// records: its impacts, in the order of time. An impact that removes the particle is the last knot.
 [[nodiscard]] inline std::vector<FlightKnot> flight_knots(const Particles& particles, std::size_t i,
                                                           const PhaseState& start, double from, double to,
                                                           std::span<const ContactRecord> records) {
     const double begin = std::max(from, particles.birth_time[i]);
     std::vector<FlightKnot> knots{{begin, start.position, start.velocity, start.velocity}};
-    for (const ContactRecord& record : records) {
-        knots.push_back({record.time, record.position, record.velocity_before, record.velocity_after});
-    }
+    add_impacts(knots, records);
     if (particles.absorbed[i] != 0) return knots;
     const double end = std::max(begin, std::min(to, particles.birth_time[i] + particles.lifetime[i]));
     knots.push_back({end, particles.position[i], particles.velocity[i], particles.velocity[i]});
@@ -65,9 +69,7 @@ public:
         const auto first =
             std::lower_bound(records_.begin(), records_.end(), id,
                              [](const ContactRecord& record, std::uint64_t key) { return record.particle < key; });
-        auto last = first;
-        while (last != records_.end() && last->particle == id) ++last;
-        return {first, last};
+        return {first, std::find_if(first, records_.end(), [&](const auto& record) { return record.particle != id; })};
     }
 
 private:

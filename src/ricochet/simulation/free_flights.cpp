@@ -77,8 +77,7 @@ void FreeFlights::advance_one(std::size_t i, const FreeFlight& flight, const Tim
     particles.velocity[i] = end.velocity;
 }
 
-/// Records the passages of a particle through counters in a flight that is not stored yet. end: state of the particle
-/// at the end of the flight.
+/// Records a particle's passages through counters in a flight that is not stored yet. end: state at its end.
 void FreeFlights::note_passages(std::size_t i, const PhaseState& end, double duration, BlockRecord& record) const {
     const Particles& particles = store_.particles();
     const Vec3& from = particles.position[i];
@@ -129,18 +128,6 @@ void FreeFlights::catch_up_all() {
         }
     });
     deferred_->clear();
-}
-
-void FreeFlights::append() {
-    if (deferred_) deferred_->append();
-}
-
-void FreeFlights::reserve(std::size_t more) {
-    if (deferred_) deferred_->reserve(more);
-}
-
-void FreeFlights::compact(const std::vector<std::uint8_t>& keep) {
-    if (deferred_) deferred_->compact(keep);
 }
 
 }  // namespace ricochet

@@ -19,15 +19,11 @@
 
 namespace ricochet {
 
-// Deferred steps of free flights are integrated together later. A particle is then fetched from memory only once for
-// many steps.
-
 /// The latest steps, and the number of them that each particle has made. A particle in free flight makes these steps
-/// when it needs a query.
+/// together when it needs a query, so that it is fetched from memory only once for many steps.
 class DeferredSteps {
 public:
-    /// Largest number of stored steps. It is small, so that the steps stay in the L1 cache and a count fits into a
-    /// byte.
+    /// Largest number of stored steps. They stay in the L1 cache, and a count fits into a byte.
     static constexpr std::size_t kMost = 64;
 
     /// Starts with `count` particles that have no deferred steps.
@@ -45,14 +41,8 @@ public:
     void append() { made_.push_back(static_cast<std::uint8_t>(steps_.size())); }
     /// Reserves memory for `more` particles.
     void reserve(std::size_t more) { grow_capacity_by(made_, more); }
-    /// Keeps the particles whose flag is not 0. keep.size() is the number of particles.
-    void compact(const std::vector<std::uint8_t>& keep) {
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < keep.size(); ++i) {
-            if (keep[i] != 0) made_[kept++] = made_[i];
-        }
-        made_.resize(kept);
-    }
+    /// Keeps the particles whose flag is not 0.
+    void compact(const std::vector<std::uint8_t>& keep) { keep_marked(made_, keep); }
 
     /// Returns the state of a particle after its deferred steps.
     [[nodiscard]] PhaseState after(std::size_t i, PhaseState state) const {
@@ -74,9 +64,8 @@ public:
     }
 
 private:
-    // flush_tiny() does not change the end of a step that moves a particle along each axis by 0 or by at least 2^-230
-    // m. If the position nearly cancels the displacement, both are multiples of 2^-283 m, and so is their sum. Local:
-    // this proof needs the bounds.
+    // flush_tiny() does not change the end of a step along an axis by 0 or by at least 2^-230 m. If the position nearly
+    // cancels it, both are multiples of 2^-283 m, and so is their sum. Local: this proof needs the bounds.
     static constexpr double kShortestStraight = 0x1p-100;  ///< s
     static constexpr double kSlowestStraight = 0x1p-130;   ///< m/s
 
@@ -96,8 +85,7 @@ private:
     std::vector<std::uint8_t> made_;  ///< number of steps that each particle has made
 };
 
-/// Advances the particles in free flight, and finds the particles that need a query. Every step begins with this pass
-/// over all particles.
+/// Advances the particles in free flight, and finds those that need a query, at the beginning of every step.
 class FreeFlights {
 public:
     /// All arguments must outlive the object.
@@ -124,9 +112,15 @@ public:
     void drop_deferred() { deferred_.reset(); }
 
     // These functions have the same meaning as the functions of Particles.
-    void append();
-    void reserve(std::size_t more);
-    void compact(const std::vector<std::uint8_t>& keep);
+    void append() {
+        if (deferred_) deferred_->append();
+    }
+    void reserve(std::size_t more) {
+        if (deferred_) deferred_->reserve(more);
+    }
+    void compact(const std::vector<std::uint8_t>& keep) {
+        if (deferred_) deferred_->compact(keep);
+    }
 
 private:
     void advance_together(std::size_t begin, std::size_t end, const FreeFlight& flight);

@@ -23,8 +23,8 @@ public:
     FrictionMeter(const HeatSettings& heat, const ForceField& forces, const MovingColliders& bodies)
         : heat_(heat), forces_(forces), bodies_(bodies) {}
 
-    /// Appends the heat gains of particle i in the order of time. scratch: contains the entries of the particle's move
-    /// from first_record and first_load on.
+    /// Appends the heat gains of particle i in the order of time. scratch: has its entries from first_record and
+    /// first_load on.
     void note(std::size_t i, const ForceInput& moved, const MoveScratch& scratch, std::size_t first_record,
               std::size_t first_load, std::vector<HeatGain>& gains) const;
 

@@ -9,8 +9,7 @@
 namespace ricochet {
 namespace {
 
-/// Returns `time` plus a fraction `part` of the interval to `next`. The delay exceeds rounding errors, but the result
-/// is at most `next`.
+/// Returns `time` plus a fraction `part` of the interval to `next`; later than rounding errors, but at most `next`.
 double soon_after(double time, double next, double part) {
     return std::min(next, time + std::max(part * (next - time), kSoonUlps * ulp(time)));
 }
@@ -58,10 +57,9 @@ bool ImpactTally::changes_energy(double time, double doubt) const {
     return change > kMostBodyChange * std::max(0.0, lost_) + kImpactEnergyRounding * size_;
 }
 
-double ImpactTally::speed_by(Wrench wrench, const ColliderLoad& load) const {
-    const Mobility body = at(load.time).mobility;
-    wrench.moment += cross(about_ - body.center, wrench.impulse);
-    return length(body.change_at(load.particle_center, wrench));
+double ImpactTally::speed_by(const Wrench& wrench, const ColliderLoad& load) const {
+    const BodyOnPath body = at(load.time);
+    return length(body.mobility.change_at(load.particle_center, body.about_center(wrench, about_)));
 }
 
 double ImpactTally::reaction_factor(double time) const {

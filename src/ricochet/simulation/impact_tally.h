@@ -1,6 +1,5 @@
 /// \file
-/// Private to the simulation: the effect of a substep's impacts on a body, and the end of the substep that these
-/// impacts require.
+/// Private to the simulation: effect of a substep's impacts on a body, and the end of the substep that they require.
 #pragma once
 
 #include <span>
@@ -22,8 +21,7 @@ namespace ricochet {
 /// Sums over the impacts on a body. The impacts are added one by one.
 class ImpactTally {
 public:
-    /// id: body id of the body's colliders, or kWorldBody if the body has no colliders. All arguments must outlive the
-    /// object.
+    /// id: of the body's colliders; kWorldBody without them. All arguments must outlive the object.
     ImpactTally(const DrivenBody& body, const BodyPath& path, const MovingColliders* colliders, BodyId id)
         : body_(&body), path_(&path), colliders_(colliders), id_(id), about_(body.moment_center()) {}
 
@@ -34,10 +32,10 @@ public:
     [[nodiscard]] bool changes_energy(double time, double doubt = 0.0) const;
     /// Returns the velocity change, in m/s, that a wrench causes on the body at the time and position of a load. The
     /// moment of the wrench refers to the same point as the moment of wrench().
-    [[nodiscard]] double speed_by(Wrench wrench, const ColliderLoad& load) const;
-    /// Returns the factor by which the body reacts more strongly to all impacts together at a time, in s, than to each
-    /// impact alone. The factor is a ratio of energies, at least 1. It is 1 if the joint application would not change
-    /// the energy by much.
+    [[nodiscard]] double speed_by(const Wrench& wrench, const ColliderLoad& load) const;
+    /// Returns the factor, at least 1, by which the body reacts more strongly to all impacts together at a time, in s,
+    /// than to each impact alone: a ratio of energies. It is 1 if applying them together would not change the energy by
+    /// much.
     [[nodiscard]] double reaction_factor(double time) const;
     [[nodiscard]] const Wrench& wrench() const { return wrench_; }
 
@@ -73,16 +71,15 @@ struct BodyContacts {
     void begin_step();
 };
 
-/// Returns true if the impulses before an impact change the body's velocity at the point of impact by much. The change
-/// is compared with the particle's velocity change in the impact. Returns false if a particle returns slowly to a body
-/// that it touched recently. A slow return is not much faster than the velocity change of the body in this step. The
-/// reason is that each velocity jump of a body releases resting particles, which then land again. Without the
-/// exception, each landing would end the substep.
+/// Returns true if the impulses before an impact change the body's velocity at the point of impact by much, compared
+/// with the particle's velocity change in the impact. Returns false if a particle returns slowly to a body that it
+/// touched recently, not much faster than the velocity change of the body in this step. Reason: each velocity jump of a
+/// body releases resting particles, which then land again, and each landing would end the substep.
 [[nodiscard]] bool changes_velocity(const ColliderLoad& impact, const Wrench& before, const ImpactTally& tally,
                                     const BodyContacts& contacts);
 
-/// Returns the end of a substep, in s, whose last impact is by a particle that is heavy compared with the body. The end
-/// is shortly after the impact, but not after the next impact. time, next: times of both impacts, in s.
+/// Returns the end of a substep, in s, whose last impact is by a particle that is heavy compared with the body: shortly
+/// after the impact, but not after the next impact. time, next: times of both impacts, in s.
 [[nodiscard]] double soon_after_impact(double time, double next);
 
 /// Returns the end of a substep, in s, that contains the impacts `taken`. The last of these impacts is at `time`, and

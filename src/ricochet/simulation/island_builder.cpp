@@ -16,9 +16,8 @@ constexpr std::size_t kIslandBlock = 16;
 /// Number of members between the prefetch of a member and its use, because neighbours in space are scattered in memory.
 constexpr std::size_t kIslandPrefetchDistance = 6;
 
-/// Number of rounds that join only spheres that have met. Later rounds also join spheres that touch joined spheres.
-/// Otherwise each round would add only one layer of a pile, and solve all layers below it again. Local, because only
-/// the cost depends on it.
+/// Number of rounds that join only spheres that have met. Later rounds also join spheres that touch them. Otherwise
+/// each round would add only one layer of a pile, and solve all below it again. Local: only the cost depends on it.
 constexpr std::size_t kRoundsAlone = 2;
 
 bool contains(const Box3& outer, const Box3& inner) {
@@ -66,8 +65,7 @@ bool IslandBuilder::join(std::uint32_t a, std::uint32_t b) {
     return true;
 }
 
-/// Returns the islands in the order of their lowest particle numbers. The particle with the lowest number represents
-/// its island.
+/// Returns the islands in the order of their lowest particle numbers. These particles represent them.
 std::vector<IslandBuilder::Island> IslandBuilder::islands_of(const std::vector<std::uint32_t>& involved) {
     is_involved_.assign(sets_.size(), 0);
     for (const std::uint32_t k : involved) is_involved_[k] = 1;
@@ -111,8 +109,7 @@ void IslandBuilder::run(const TimeSpan& step) {
     });
 }
 
-/// Collects the members of an island in their states at the start of the step. Orders them by position, so that ids do
-/// not affect the result.
+/// Collects an island's members at the start of the step, ordered by position, so that ids do not affect the result.
 void IslandBuilder::collect_members(Island& island, const TimeSpan& step) {
     struct Placed {
         double x;
@@ -144,8 +141,7 @@ void IslandBuilder::collect_members(Island& island, const TimeSpan& step) {
     }
 }
 
-/// Returns true if a member has left its declared bounds. The bounds of a member in free flight are its path. The
-/// bounds of any other member are its box.
+/// Returns true if a member has left its declared bounds: its path in free flight, otherwise its box.
 bool IslandBuilder::is_out_of_bounds(const Island& island, const IslandMember& member) const {
     if (member.is_fixed) return false;
     const auto k = static_cast<std::uint32_t>(member.particle - first_);
@@ -153,8 +149,7 @@ bool IslandBuilder::is_out_of_bounds(const Island& island, const IslandMember& m
     return member.impacts > 0 || !contains(plans_.box(k), member.swept);
 }
 
-/// Returns the members out of bounds. Members of islands of this round come first, then members of islands that earlier
-/// rounds have joined.
+/// Returns the members out of bounds: first those of this round's islands, then those of earlier joined islands.
 IslandBuilder::OutOfBoundsMembers IslandBuilder::members_out_of_bounds() const {
     OutOfBoundsMembers off;
     std::vector<const IslandMember*> earlier;

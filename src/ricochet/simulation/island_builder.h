@@ -2,10 +2,9 @@
 /// Private to the simulation: islands of spheres that meet each other in a step, and their solution.
 ///
 /// Spheres form an island if they may meet within their declared bounds (PairPlans). Islands are solved in parallel:
-/// impact by impact (EventIsland), or as one problem of all contacts (ContactIslands). If a member leaves its declared
-/// bounds, the solution may have missed its collisions with spheres outside the island. The island is then joined with
-/// the spheres that the member would have met, and solved again from the start of the step. These rounds repeat until
-/// no islands are joined.
+/// impact by impact (EventIsland), or as one problem of all contacts (ContactIslands). If a member leaves its bounds,
+/// it may have missed collisions with spheres outside. The island is then joined with those that it would have met, and
+/// solved again from the start of the step, in rounds until no islands are joined.
 #pragma once
 
 #include <cstdint>
@@ -39,8 +38,7 @@ public:
 
     /// Solves the islands among the particles of a range. The plans of these particles must have been found.
     void solve(const ParticleRange& range, const TimeSpan& step);
-    /// Returns the islands of this step, in the order of their lowest particle numbers. Members that have met no other
-    /// sphere are not included.
+    /// Returns the islands of this step by their lowest particle numbers, without members that have met no other.
     [[nodiscard]] std::vector<Island>& all() { return islands_; }
 
 private:

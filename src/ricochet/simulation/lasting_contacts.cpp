@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
 
 #include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
@@ -15,8 +17,7 @@ bool is_pinned(const ParticleStore& store, std::uint64_t particle) {
     return i && store.is_fixed(*i);
 }
 
-/// Returns the gap between the spheres of a pair, divided by the smaller radius. The gap is infinite if one of the
-/// spheres is gone.
+/// Returns the gap between the spheres of a pair, divided by the smaller radius; infinite if one of them is gone.
 double relative_gap(const ParticleStore& store, const ContactKey& key) {
     const std::optional<std::size_t> i = store.index_of(key.particle);
     const std::optional<std::size_t> k = store.index_of(key.other);
@@ -81,7 +82,7 @@ void LastingContacts::wake_alone(const std::vector<std::uint64_t>& woken, double
     for (const std::uint64_t particle : woken) {
         const std::optional<std::size_t> i = parts_.store.index_of(particle);
         if (!i) continue;
-        parts_.mover.sleepers().wake(*i, time);
+        parts_.mover.wake(*i, time);
         if (*i >= first_ && *i - first_ < traces_.is_asleep.size()) traces_.is_asleep[*i - first_] = 0;
     }
     std::vector<WarmStartMemory::Entry> contacts = sleeping_islands_.wake(woken);
@@ -102,31 +103,32 @@ void LastingContacts::wake_alone(const std::vector<std::uint64_t>& woken, double
 
 void LastingContacts::wake_all(double time) { wake_alone(sleeping_islands_.particles(), time); }
 
+/// Calls mark(i) for the particles in contacts of the last step's contact islands, with their indices.
+template <class Mark>
+void LastingContacts::mark_contacts(bool with_rebounds, const Mark& mark) const {
+    const auto find_and_mark = [&](std::uint64_t particle) {
+        if (const std::optional<std::size_t> i = parts_.store.index_of(particle)) mark(*i);
+    };
+    for (const WarmStartMemory::Entry& entry : memory_.entries()) {
+        if (entry.rebounds && !with_rebounds) continue;
+        find_and_mark(entry.key.particle);
+        if (!entry.key.is_wall()) find_and_mark(entry.key.other);
+    }
+}
+
 const PairTraces& LastingContacts::find_traces() {
     const std::size_t size = traces_.is_asleep.size();
     traces_.version = sleeping_islands_.version();
     traces_.presses.assign(size, 0);
-    const auto mark = [&](std::uint64_t particle) {
-        const std::optional<std::size_t> i = parts_.store.index_of(particle);
-        if (i && *i >= first_ && *i - first_ < size) traces_.presses[*i - first_] = 1;
-    };
-    for (const WarmStartMemory::Entry& entry : memory_.entries()) {
-        mark(entry.key.particle);
-        if (!entry.key.is_wall()) mark(entry.key.other);
-    }
+    mark_contacts(true, [&](std::size_t i) {
+        if (i >= first_ && i - first_ < size) traces_.presses[i - first_] = 1;
+    });
     return traces_;
 }
 
 std::vector<std::uint8_t> LastingContacts::pressing() const {
     std::vector<std::uint8_t> pressing(parts_.store.size(), 0);
-    const auto mark = [&](std::uint64_t particle) {
-        if (const std::optional<std::size_t> i = parts_.store.index_of(particle)) pressing[*i] = 1;
-    };
-    for (const WarmStartMemory::Entry& entry : memory_.entries()) {
-        if (entry.rebounds) continue;
-        mark(entry.key.particle);
-        if (!entry.key.is_wall()) mark(entry.key.other);
-    }
+    mark_contacts(false, [&](std::size_t i) { pressing[i] = 1; });
     return pressing;
 }
 
@@ -149,8 +151,7 @@ bool LastingContacts::hits_sleeper(std::size_t hitting, std::size_t sleeping, co
     return is_opposed_by_friction(sleeping, towards, step.begin) && dot(velocity, towards) > resting * length(towards);
 }
 
-/// Returns true if only friction opposes a push on a sleeper, because the push is not directed onto the supports of the
-/// sleeper.
+/// Returns true if only friction opposes a push on a sleeper, because its direction is not onto the supports.
 bool LastingContacts::is_opposed_by_friction(std::size_t sleeping, const Vec3& direction, double time) const {
     const Vec3 pull = rules().forces.acceleration(parts_.store.force_input(sleeping, time));
     return pull == Vec3{} || dot(direction, pull) < kOntoSupports * length(direction) * length(pull);
@@ -170,8 +171,7 @@ bool LastingContacts::wake_hit_sleepers(const PairPlans& plans, const TimeSpan& 
         hit.push_back(particles.id[first_ + sleeping]);
         largest = std::max(largest, particles.radius[first_ + hitting] / particles.radius[first_ + sleeping]);
     }
-    // A large sphere pushes all small spheres that it covers. They are woken in one call, because each further call
-    // repeats the whole solution.
+    // All small spheres that a large sphere covers are woken at once, because each call repeats the whole solution.
     wake(hit, step.begin, static_cast<int>(std::min(largest, kMostWokenContacts)));
     return !hit.empty();
 }
@@ -242,33 +242,19 @@ void LastingContacts::plan_sleep(std::span<const ContactIslandMember> members, C
 
 void LastingContacts::end(std::span<const ContactIslandTrace* const> traces, std::span<const PairImpactRecord> impacts,
                           const TimeSpan& step) {
-    if (!are_children_) loads_.pass_on(sleeping_islands_, impulses_on_sleepers(traces, impacts), step);
-    if (are_children_) {
-        std::vector<WarmStartMemory::Entry> pressed;
-        for (const ContactIslandTrace* const trace : traces) {
-            pressed.insert(pressed.end(), trace->pressed.begin(), trace->pressed.end());
-        }
-        memory_.add(pressed);
-        return;
-    }
+    if (are_children_) return memory_.add(joined(traces, &ContactIslandTrace::pressed));
+    loads_.pass_on(impulses_on_sleepers(traces, impacts), step);
     std::vector<const std::vector<WarmStartMemory::Entry>*> pressed;
     for (const ContactIslandTrace* const trace : traces) pressed.push_back(&trace->pressed);
     memory_.replace(pressed);
     put_to_sleep(traces, step);
-    std::vector<SleeperImpulse> stopped;
-    for (const ContactIslandTrace* const trace : traces) {
-        stopped.insert(stopped.end(), trace->stopped.begin(), trace->stopped.end());
-    }
-    loads_.stop(sleeping_islands_, stopped, step);
+    loads_.stop(joined(traces, &ContactIslandTrace::stopped), step);
 }
 
 std::vector<SleeperImpulse> LastingContacts::impulses_on_sleepers(std::span<const ContactIslandTrace* const> traces,
                                                                   std::span<const PairImpactRecord> impacts) const {
-    std::vector<SleeperImpulse> impulses;
-    if (sleeping_islands_.empty()) return impulses;
-    for (const ContactIslandTrace* const trace : traces) {
-        impulses.insert(impulses.end(), trace->onto_sleepers.begin(), trace->onto_sleepers.end());
-    }
+    if (sleeping_islands_.empty()) return {};
+    std::vector<SleeperImpulse> impulses = joined(traces, &ContactIslandTrace::onto_sleepers);
     for (const PairImpactRecord& impact : impacts) {
         if (sleeping_islands_.is_asleep(impact.first)) impulses.push_back({impact.first, -impact.impulse});
         if (sleeping_islands_.is_asleep(impact.second)) impulses.push_back({impact.second, impact.impulse});
@@ -277,31 +263,23 @@ std::vector<SleeperImpulse> LastingContacts::impulses_on_sleepers(std::span<cons
 }
 
 void LastingContacts::put_to_sleep(std::span<const ContactIslandTrace* const> traces, const TimeSpan& step) {
-    std::vector<SleepingIslands::SleepCounter> still;
-    for (const ContactIslandTrace* const trace : traces)
-        still.insert(still.end(), trace->still.begin(), trace->still.end());
-    sleeping_islands_.set_sleep_counters(std::move(still));
+    sleeping_islands_.set_sleep_counters(joined(traces, &ContactIslandTrace::still));
     wake_unsupported(step);
-    std::vector<std::uint64_t> falling;
+    const std::vector<std::uint64_t> falling = joined(traces, &ContactIslandTrace::falling_asleep);
+    if (falling.empty()) return;
     std::vector<WarmStartMemory::Entry> contacts;
-    std::vector<SleepingIslands::Weight> weights;
-    std::vector<ContactKey> touching;
     for (const ContactIslandTrace* const trace : traces) {
         const std::vector<std::uint64_t>& own = trace->falling_asleep;
         if (own.empty()) continue;
-        falling.insert(falling.end(), own.begin(), own.end());
-        weights.insert(weights.end(), trace->weights.begin(), trace->weights.end());
-        touching.insert(touching.end(), trace->touching.begin(), trace->touching.end());
         const auto falls = [&](std::uint64_t id) { return std::binary_search(own.begin(), own.end(), id); };
-        for (const WarmStartMemory::Entry& entry : trace->pressed) {
-            if (falls(entry.key.particle) || (!entry.key.is_wall() && falls(entry.key.other)))
-                contacts.push_back(entry);
-        }
+        std::copy_if(trace->pressed.begin(), trace->pressed.end(), std::back_inserter(contacts),
+                     [&](const WarmStartMemory::Entry& entry) {
+                         return falls(entry.key.particle) || (!entry.key.is_wall() && falls(entry.key.other));
+                     });
     }
     // Adds all spheres in one call, because each call visits all sleepers.
-    if (falling.empty()) return;
-    sleeping_islands_.add(falling, contacts, weights);
-    sleeping_islands_.join(touching);
+    sleeping_islands_.add(falling, contacts, joined(traces, &ContactIslandTrace::weights));
+    sleeping_islands_.join(joined(traces, &ContactIslandTrace::touching));
 }
 
 /// Does nothing without moving colliders, because only among them the verifier follows the time of every particle.
@@ -309,7 +287,7 @@ void LastingContacts::check_sleepers(const TimeSpan& step, std::vector<BlockReco
     if (sleeping_islands_.empty() || are_children_ || rules().bodies.empty()) return;
     BlockRecord& record = blocks.emplace_back();
     for (std::size_t k = 0; k < traces_.is_asleep.size(); ++k) {
-        if (is_asleep(static_cast<std::uint32_t>(k))) parts_.mover.sleepers().check(k, step, record);
+        if (is_asleep(static_cast<std::uint32_t>(k))) parts_.mover.check_sleeper(k, step, record);
     }
 }
 

@@ -1,15 +1,12 @@
 /// \file
-/// Private to the simulation: the state of contact islands that is kept between steps. It consists of the impulses of
-/// contacts and of the sleeping spheres.
+/// Private to the simulation: impulses of contacts and sleeping spheres, the state of contact islands between steps.
 ///
-/// Spheres that have been at rest in a contact island for several steps sleep (SleepingIslands). They sleep until
-/// another sphere hits them, or until the load on them differs from the load at which they fell asleep.
+/// Spheres that have been at rest in a contact island for several steps sleep (SleepingIslands), until another sphere
+/// hits them, or the load on them differs from the load at which they fell asleep.
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "ricochet/response/contact_solver/contact_island.h"
@@ -29,18 +26,16 @@ struct ContactIslandTrace {
     std::vector<SleepingIslands::Weight> weights;      ///< weights of the spheres that fall asleep
     std::vector<SleeperImpulse> onto_sleepers;         ///< impulses of awake spheres on sleepers
     std::vector<SleeperImpulse> stopped;               ///< momentum that spheres lose when they fall asleep
-    std::vector<ContactKey> touching;                  ///< pairs that touch, with or without load; empty if no sphere
-                                                       ///< falls asleep
+    std::vector<ContactKey> touching;                  ///< pairs that touch; empty if no sphere falls asleep
     bool is_unsolved = false;                          ///< true if the solver did not reach the tolerance
 };
 
 class LastingContacts {
 public:
-    explicit LastingContacts(const PairParts& parts) : parts_(parts), loads_(parts) {}
+    explicit LastingContacts(const PairParts& parts) : parts_(parts), loads_(parts, sleeping_islands_) {}
 
     [[nodiscard]] const SleepingIslands& sleeping_islands() const { return sleeping_islands_; }
-    /// Begins a step for the particles of a range, and finds the sleepers among them. Wakes sleepers next to removed
-    /// sleepers, and sleepers near moving colliders.
+    /// Begins a step for the particles of a range, and wakes sleepers beside removed sleepers and moving colliders.
     void begin(const ParticleRange& range, const TimeSpan& step);
     /// Returns the state that plans depend on. Must be called again after sleepers have woken.
     [[nodiscard]] const PairTraces& find_traces();
@@ -56,8 +51,7 @@ public:
     void wake(const std::vector<std::uint64_t>& particles, double time, int contacts = 1);
     /// Returns true if a particle of the range sleeps in an island. i: index in the particles' arrays.
     [[nodiscard]] bool sleeps(std::size_t i) const { return traces_.is_asleep[i - first_] != 0; }
-    /// Returns one flag per particle. It is 1 if a contact in a contact island of the last step supports the particle
-    /// without a rebound.
+    /// Returns a flag per particle: 1 if a contact of the last step's contact islands supports it without a rebound.
     [[nodiscard]] std::vector<std::uint8_t> pressing() const;
     /// Returns the contacts of the last step's contact islands.
     [[nodiscard]] const WarmStartMemory& memory() const { return memory_; }
@@ -88,6 +82,8 @@ public:
 private:
     [[nodiscard]] const ResponseRules& rules() const { return parts_.response.rules(); }
     [[nodiscard]] bool is_asleep(std::uint32_t k) const { return traces_.is_asleep[k] != 0; }
+    template <class Mark>
+    void mark_contacts(bool with_rebounds, const Mark& mark) const;
     [[nodiscard]] std::vector<SleeperImpulse> impulses_on_sleepers(std::span<const ContactIslandTrace* const> traces,
                                                                    std::span<const PairImpactRecord> impacts) const;
     void wake_alone(const std::vector<std::uint64_t>& woken, double time);

@@ -73,8 +73,7 @@ double LoadsOnBodies::heaviness_on(std::size_t body, const ColliderLoad& load) c
     return load.mass * dot(bodies_[body].velocity_change(wrench, load.particle_center), load.impulse) / size;
 }
 
-// Stores a tried load as the low or the high end of the search. A load is too small if its residual has the direction
-// of the first residual.
+// Stores a tried load as the low or high end of the search: low if its residual has the direction of the first one.
 void LoadRelaxation::keep(const DrivenBody& body, const Wrench& planned, const Wrench& lacks) {
     const Tried tried{planned, lacks, std::sqrt(product(body, lacks, lacks))};
     const bool is_low = !low_ || product(body, lacks, low_->lacks) >= 0.0;

@@ -2,13 +2,12 @@
 /// Private to the simulation: the loads on bodies, and the search for the steady load in the plan of a body. The plan
 /// must agree with the particles that rest on the body.
 ///
-/// The plan of a body contains a planned load. Particles that rest on the body follow the plan, and exert a returned
-/// load. If the particles are heavier than the body, a smaller planned load leads to a larger returned load. The
-/// returned load then changes by more than the planned load. It is zero if the planned load is so large that the body
-/// escapes from the particles. Repeated planning with the returned load would diverge. Instead the load is searched
-/// between a load that is too small and a load that is too large (M. Dowell, P. Jarratt, "A modified regula falsi
-/// method for computing the root of an equation", BIT 11, 1971). Until both loads are known, a relaxation factor from
-/// the ratio of masses is used (U. Kuttler, W. A. Wall, "Fixed-point fluid-structure interaction solvers with dynamic
+/// Particles that rest on the body follow its plan, and exert a returned load. If they are heavier than the body, a
+/// smaller planned load leads to a returned load that is larger by more than that. The returned load is zero if the
+/// body escapes from the particles. Repeated planning with the returned load would diverge. Instead the load is
+/// searched between one that is too small and one that is too large (M. Dowell, P. Jarratt, "A modified regula falsi
+/// method for computing the root of an equation", BIT 11, 1971). Until both are known, a relaxation factor from the
+/// ratio of masses is used (U. Kuttler, W. A. Wall, "Fixed-point fluid-structure interaction solvers with dynamic
 /// relaxation", Computational Mechanics 43, 2008).
 #pragma once
 
@@ -38,8 +37,7 @@ public:
     /// Begins a search for a load.
     void begin_search() { low_ = high_ = last_ = std::nullopt; }
     [[nodiscard]] bool is_searching() const { return low_.has_value(); }
-    /// Begins a search for a shorter substep. Returns the first load to try. part: duration of the shorter substep as a
-    /// fraction of the previous duration.
+    /// Begins a search in a shorter substep, by the factor `part`. Returns the first load to try.
     [[nodiscard]] Wrench shortened(double part);
     /// Returns the estimated load of this substep minus the load of its first plan.
     [[nodiscard]] Wrench variation(const Wrench& planned, const Wrench& back, double heaviness) const;
@@ -77,8 +75,7 @@ private:
     std::optional<Tried> last_;
 };
 
-/// View of the loads in a substep. The arguments of the constructor must outlive the view. The loads of each particle
-/// are consecutive, in the order of time.
+/// View of the loads in a substep, consecutive for each particle, in the order of time. Its arguments must outlive it.
 class LoadsOnBodies {
 public:
     /// collider_of: body id of the colliders of each body, or kWorldBody for a body without colliders. slow: largest
@@ -96,8 +93,7 @@ public:
                                               double until) const;
     /// Returns the time, in s, at which the last resting load on a body ends. Returns infinity without a resting load.
     [[nodiscard]] double left_at(std::size_t body, std::span<const ColliderLoad> loads) const;
-    /// Returns the mass of a particle divided by the body's effective mass for the impulse of a load. Returns 0 without
-    /// an impulse.
+    /// Returns the mass of a particle divided by the body's effective mass for a load's impulse; 0 without impulse.
     [[nodiscard]] double heaviness_on(std::size_t body, const ColliderLoad& load) const;
 
 private:

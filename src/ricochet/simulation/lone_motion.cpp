@@ -28,8 +28,7 @@ void LoneMotion::begin(const ParticleRange& range, const TimeSpan& step, const P
     is_bounded_ = is_bounded(parts_);
 }
 
-/// Returns true if walls alone support a sphere at rest, and no moving collider comes near. Such a sphere sleeps if
-/// single particles may sleep.
+/// Returns true if only walls support a sphere at rest, and no moving collider comes near. Such a sphere may sleep.
 bool LoneMotion::lies(std::size_t i) const {
     const Particles& particles = parts_.store.particles();
     if (particles.held[i] == 0 || !parts_.response.rules().forces.is_steady()) return false;
@@ -47,9 +46,8 @@ bool LoneMotion::may_leave(const Box3& box) const {
     return !box.empty() && !parts_.response.rules().bodies.all_stay_out(box);
 }
 
-/// Returns the largest distance, in m, that a sphere can travel in a duration, in s. Walls and forces must not give the
-/// sphere more energy than a uniform force. The energy of the spin is included, because friction can turn it into
-/// speed.
+/// Returns the largest distance, in m, that a sphere can travel in a duration, in s, if walls and forces give it no
+/// more energy than a uniform force. The energy of the spin is included, because friction can turn it into speed.
 double LoneMotion::reach(std::size_t i, double duration) const {
     const Particles& particles = parts_.store.particles();
     const double turning = particles.radius[i] * length(particles.spin[i]);

@@ -18,8 +18,7 @@ struct PairTraces {
     std::uint64_t version = 0;            ///< of the sleeping islands; changes with them
 };
 
-/// Computes the region that a sphere of a range can reach in a step if it meets no other spheres. Spheres are given by
-/// their numbers in the range.
+/// Computes the region that a sphere, given by its number in a range, can reach in a step if it meets no others.
 class LoneMotion {
 public:
     explicit LoneMotion(const PairParts& parts) : parts_(parts) {}
@@ -31,8 +30,7 @@ public:
     [[nodiscard]] double radius(std::uint32_t k) const { return parts_.store.particles().radius[first_ + k]; }
 
     [[nodiscard]] bool is_asleep(std::uint32_t k) const { return traces_->is_asleep[k] != 0; }
-    /// Returns false for a sphere that is pinned or asleep, or that rests on walls alone while no moving collider comes
-    /// near.
+    /// Returns false for a sphere that is pinned or asleep, or that rests on walls alone, away from moving colliders.
     [[nodiscard]] bool moves(std::uint32_t k) const;
 
     /// Returns the box of a sphere that may touch walls. The box is empty if the sphere cannot meet other spheres. It

@@ -12,8 +12,7 @@
 namespace ricochet {
 namespace {
 
-// Sizes in bytes, measured with runs of a million particles and meshes of two million triangles. Local: the sizes only
-// serve an estimate of memory.
+// Sizes in bytes, measured with a million particles and meshes of two million triangles. Local: only for the estimate.
 constexpr double kProgram = 12e6;             // libraries and threads
 constexpr double kParticle = 380.0;           // a particle in the arrays, in two frames, and as a value at its birth
 constexpr double kAttributeComponent = 32.0;  // a component of an attribute, stored like the particle
@@ -77,8 +76,7 @@ double rate_of(const EmitterDescription& emitter, const SimulationSetup& setup) 
     return mean_of(emitter.rate) + per_frame * setup.options.frame_rate;
 }
 
-/// Returns the number of an emitter's particles that certainly live at the same time. Returns 0 for children, because
-/// their number is not known.
+/// Returns the number of an emitter's particles that certainly live at once; 0 for children, whose number is unknown.
 double sure_population(const EmitterDescription& emitter, const SimulationSetup& setup) {
     const SimulationOptions& options = setup.options;
     if (emitter.parent || !(emitter.start < options.duration)) return 0.0;
@@ -150,8 +148,7 @@ private:
         for (std::size_t k = 0; k < setup_.colliders.size(); ++k) {
             const ColliderShape& shape = setup_.colliders[k].shape;
             add({MemoryNeed::Part::collider, k}, triangles_of(shape), each);
-            // There are two copies: the given positions and the positions in the world. options.verify needs a third
-            // copy, and boxes of the same size.
+            // The given positions and those in the world. options.verify needs a third copy, and boxes of that size.
             const double copies = setup_.options.verify ? 4.0 : 2.0;
             if (positions_of(shape) > 0.0) estimate_.needs.back().bytes += copies * positions_of(shape);
         }

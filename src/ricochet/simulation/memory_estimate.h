@@ -1,9 +1,8 @@
 /// \file
 /// Private to the library: estimate of the memory of a simulation from its setup, before the simulation is made.
 ///
-/// The numbers approximate the peak memory of a run with frames. They were measured as peak_memory_bytes of summaries,
-/// and rounded up. Only certain needs are counted. If surfaces, bounds or shattering can remove particles, the births
-/// of only one step are counted.
+/// The numbers approximate the peak memory of a run with frames, measured as peak_memory_bytes and rounded up. Only
+/// certain needs count: the births of one step, if surfaces, bounds or shattering can remove particles.
 #pragma once
 
 #include <algorithm>
@@ -51,8 +50,7 @@ void require_memory(const SimulationSetup& setup);
     return most - std::min(most, living);
 }
 
-/// Number of particles that fit into memory. The number decides only whether a run continues, and never affects
-/// results.
+/// Number of particles that fit into memory. It decides only whether a run continues, and never affects results.
 class ParticleMemory {
 public:
     /// bytes_each: memory of an additional particle, in bytes. Until measure() is called, any number of particles fits.
@@ -72,8 +70,7 @@ private:
     std::uint64_t most_ = std::numeric_limits<std::uint64_t>::max();
 };
 
-/// Returns the bytes that particles joined by springs, and these springs, need. Includes the data from which they are
-/// built.
+/// Returns the bytes of particles joined by springs, of these springs, and of the data to build both.
 [[nodiscard]] double bytes_of_springs(double particles, double springs, IntegratorKind integrator);
 
 }  // namespace ricochet

@@ -1,11 +1,9 @@
 /// \file
-/// Private to the simulation: modules, and the list of modules. A module is a part of a run that the stages of a step
-/// call.
+/// Private to the simulation: modules, parts of a run that the stages of a step call, and the list of modules.
 ///
-/// A module owns the objects of one capability. A stage calls a module once for all particles of a generation or a
-/// block, never for a single particle. Objects that take part in the motion of single particles are in MoveObservers.
-/// The list in modules.cpp contains all modules in the order of their calls. A new module needs its class, a line in
-/// that list, and tests.
+/// A module owns the objects of one capability. A stage calls it once for all particles of a generation or a block.
+/// Objects that take part in the motion of single particles are in MoveObservers. The list in modules.cpp has the
+/// modules in the order of their calls. A new module needs its class, a line in that list, and tests.
 #pragma once
 
 #include <algorithm>
@@ -83,8 +81,7 @@ public:
     [[nodiscard]] virtual bool allows_deferred_steps() const { return false; }
     /// Returns the reason why no run can produce the restored state of particle i. Returns null for a valid state.
     [[nodiscard]] virtual const char* fault_of(std::size_t /*i*/) const { return nullptr; }
-    /// Returns the reason why no run can produce the module's restored state at a time, in s. Returns null for a valid
-    /// state.
+    /// Returns the reason why no run can produce the restored state at a time, in s; null for a valid state.
     [[nodiscard]] virtual const char* fault(double /*time*/) const { return nullptr; }
     /// Adds the settings of the module to the fingerprint of a saved state.
     virtual void add_to_fingerprint(StateHash& /*hash*/) const {}

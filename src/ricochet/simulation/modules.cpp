@@ -16,8 +16,7 @@
 namespace ricochet {
 namespace {
 
-/// Wakes sleeping particles near moving colliders. Other sleeping particles stay asleep, because all their supports are
-/// at rest.
+/// Wakes sleeping particles near moving colliders. The supports of all others are at rest.
 class WakingModule final : public Module {
 public:
     WakingModule(const MovingColliders& moving, const ModuleParts& parts) : moving_(moving), parts_(parts) {}
@@ -27,7 +26,7 @@ public:
         for (std::size_t i = 0; store.may_sleep() && i < store.size(); ++i) {
             const bool sleeps = store.is_asleep(i) && !store.is_fixed(i);
             if (!sleeps || !parts_.population.schedule().is_left_alone(i) || !is_near_moving(i)) continue;
-            parts_.recorder.statistics().lost_impulses += parts_.mover.sleepers().add_weight(i, substep.begin, 1.0);
+            parts_.recorder.statistics().lost_impulses += parts_.mover.add_weight(i, substep.begin, 1.0);
             parts_.population.wake(i);
         }
     }

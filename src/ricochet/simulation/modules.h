@@ -103,8 +103,7 @@ private:
     const PairMotion* pairs_ = nullptr;  // null if spheres pass through each other
 };
 
-/// Moves dynamic bodies. A step is divided into substeps in which planned and actual loads agree. Every run has this
-/// module, which does nothing without bodies.
+/// Moves dynamic bodies, in substeps in which planned and actual loads agree. Every run has this module.
 class BodiesModule final : public Module {
 public:
     /// Plans the first step. bodies: see DrivenMotion.
@@ -134,15 +133,14 @@ private:
     DrivenMotion motion_;
 };
 
-/// Divides the particles of a run between its ranks, and moves particles to other ranks to balance the work. Gathers
-/// the run on the first rank. Particles change ranks only after their deferred steps have been integrated. No other
-/// code uses the rank of a particle.
+/// Divides the particles of a run between its ranks, moves particles to other ranks to balance the work, and gathers
+/// the run on the first rank. Particles change ranks only after their deferred steps. No other code uses the rank of a
+/// particle.
 class SharedRun final : public Module {
 public:
     explicit SharedRun(const ModuleParts& parts) : parts_(parts) {}
 
-    /// Keeps only the particles of this rank. Must be called while all ranks have all particles. Only the first rank
-    /// keeps the counts.
+    /// Keeps only this rank's particles, and the counts on the first rank. All ranks must have all particles before.
     void take_share();
     [[nodiscard]] const RankBalance& balance() const { return balancer_.balance(); }
     /// Returns the whole run on the first rank. All ranks must call this function.

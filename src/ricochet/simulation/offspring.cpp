@@ -24,45 +24,44 @@ constexpr std::size_t kBlock = 256;
 
 /// Path of one particle between before_move() and after_move(), as flights between knots.
 struct Offspring::Trajectory {
-    using Knot = FlightKnot;
     Particle particle;      ///< the particle in its last state
     std::size_t entry = 0;  ///< index relative to first_
-    std::vector<Knot> knots;
+    std::vector<FlightKnot> knots;
     std::span<const ContactRecord> records;
     bool shattered = false;
     bool died = false;
 
     [[nodiscard]] double begin() const { return knots.front().time; }
     [[nodiscard]] double end() const { return knots.back().time; }
-    [[nodiscard]] Particle at(const Knot& knot, const Vec3& velocity) const;
+    [[nodiscard]] Particle at(const Vec3& position, const Vec3& velocity) const {
+        Particle parent = particle;
+        parent.position = position;
+        parent.velocity = velocity;
+        return parent;
+    }
     [[nodiscard]] Particle at(double time, const CollisionWorld& world, ContactScratch& scratch) const;
+    /// Returns an event for children of an emitter. parent: the particle at the event.
+    [[nodiscard]] SpawnEvent event(const Emitter& emitter, double time, std::uint32_t first_ordinal,
+                                   std::uint32_t count, bool share, Particle parent) const {
+        const Claim claim{time,        parent.id, emitter.number(), first_ordinal, count, parent.origin.generation,
+                          parent.mass, share};
+        return {claim, std::move(parent), entry};
+    }
 };
-
-Particle Offspring::Trajectory::at(const Knot& knot, const Vec3& velocity) const {
-    Particle parent = particle;
-    parent.position = knot.position;
-    parent.velocity = velocity;
-    return parent;
-}
 
 Particle Offspring::Trajectory::at(double time, const CollisionWorld& world, ContactScratch& scratch) const {
     std::size_t k = 0;
     while (k + 2 < knots.size() && knots[k + 1].time <= time) ++k;
-    const Knot& a = knots[k];
-    if (k + 1 == knots.size()) return at(a, a.after);
-    const Knot& b = knots[k + 1];
-    if (!(b.time > a.time)) return at(a, a.after);
+    const FlightKnot& a = knots[k];
+    if (k + 1 == knots.size() || !(knots[k + 1].time > a.time)) return at(a.position, a.after);
+    const FlightKnot& b = knots[k + 1];
     const PhaseState state = state_between(a, b, time);
-    Particle parent = particle;
-    parent.position = state.position;
-    parent.velocity = state.velocity;
-    if (is_clear(world, scratch, a.position, parent.position)) return parent;
-    if (is_clear(world, scratch, b.position, parent.position)) return parent;
-    return at(a, a.after);
+    const bool is_in_sight =
+        is_clear(world, scratch, a.position, state.position) || is_clear(world, scratch, b.position, state.position);
+    return is_in_sight ? at(state.position, state.velocity) : at(a.position, a.after);
 }
 
-Offspring::Offspring(const Parts& parts, const OffspringLimits& limits)
-    : parts_(parts), limits_(limits), children_of_(parts.emitters.size()) {
+Offspring::Offspring(const Parts& parts) : parts_(parts), children_of_(parts.emitters.size()) {
     const std::vector<Emitter>& emitters = parts.emitters;
     for (const Emitter& emitter : emitters) {
         const auto& rule = emitter.description().parent;
@@ -88,7 +87,7 @@ Offspring::Offspring(const Parts& parts, const OffspringLimits& limits)
 
 double Offspring::shatter_impulse(const Particles& particles, std::size_t i) const {
     const Origin& origin = particles.origin[i];
-    if (origin.emitter == kNoEmitter || origin.generation >= limits_.max_depth) {
+    if (origin.emitter == kNoEmitter || origin.generation >= parts_.options.max_depth) {
         return std::numeric_limits<double>::infinity();
     }
     for (const std::uint32_t child : children_of_[origin.emitter]) {
@@ -124,75 +123,68 @@ Offspring::Trajectory Offspring::trajectory_of(const Particles& particles, std::
     return trajectory;
 }
 
-// Puts the births beyond `most` into one spawn generation. All of them are refused, because the earlier births fill the
-// population.
+// Puts the births beyond `most` into one event. All are refused, because the earlier ones fill the population.
 void Offspring::add_life(const Emitter& emitter, const Trajectory& trajectory, std::uint64_t most,
-                         std::vector<SpawnGeneration>& spawn_generations) const {
+                         std::vector<SpawnEvent>& events) const {
     thread_local ContactScratch scratch;
     const LifeBirths births = births_in_life(emitter, trajectory.particle, trajectory.begin(), trajectory.end(), most);
     for (const LifeBirth& birth : births.first) {
-        spawn_generations.push_back({birth.time, emitter.number(), birth.ordinal, 1, false,
-                                     trajectory.at(birth.time, parts_.scene.world(), scratch), trajectory.entry});
+        events.push_back(trajectory.event(emitter, birth.time, birth.ordinal, 1, false,
+                                          trajectory.at(birth.time, parts_.scene.world(), scratch)));
     }
     if (births.more == 0) return;
     const double time = births.first.empty() ? trajectory.end() : births.first.back().time;
-    spawn_generations.push_back({time, emitter.number(), std::numeric_limits<std::uint32_t>::max(), births.more, false,
-                                 trajectory.particle, trajectory.entry});
+    events.push_back(trajectory.event(emitter, time, std::numeric_limits<std::uint32_t>::max(), births.more, false,
+                                      trajectory.particle));
 }
 
 void Offspring::add_impacts(const Emitter& emitter, const Trajectory& trajectory, Origin& origin,
-                            std::vector<SpawnGeneration>& spawn_generations) const {
+                            std::vector<SpawnEvent>& events) const {
     const ParentRule& rule = *emitter.description().parent;
     for (const ContactRecord& record : trajectory.records) {
         const bool is_last = &record == &trajectory.records.back();
         const double impulse = record.mass * length(record.velocity_after - record.velocity_before);
         const bool ends_here = rule.share && trajectory.shattered && is_last;
-        // A parent that can shatter has births only when it shatters. If its generation is too deep to shatter, the
-        // births are refused here.
-        const bool refused = rule.share && origin.generation >= limits_.max_depth && impulse >= rule.threshold_impulse;
+        // A parent that can shatter has births only then. If it is too deep for that, they are refused here.
+        const bool refused =
+            rule.share && origin.generation >= parts_.options.max_depth && impulse >= rule.threshold_impulse;
         if (!ends_here && !refused && (rule.share || impulse < rule.threshold_impulse)) continue;
         std::uint32_t count = children_of_event(emitter, trajectory.particle, origin.birth_impacts++);
         if (rule.share) count = std::max(count, 1U);
-        Particle parent = trajectory.particle;
-        parent.position = record.position;
-        parent.velocity = record.velocity_after;
-        spawn_generations.push_back(
-            {record.time, emitter.number(), origin.impact_children, count, rule.share, parent, trajectory.entry});
+        events.push_back(trajectory.event(emitter, record.time, origin.impact_children, count, rule.share,
+                                          trajectory.at(record.position, record.velocity_after)));
         origin.impact_children += count;
     }
 }
 
-void Offspring::add_death(const Emitter& emitter, const Trajectory& trajectory,
-                          std::vector<SpawnGeneration>& spawn_generations) const {
+void Offspring::add_death(const Emitter& emitter, const Trajectory& trajectory, std::vector<SpawnEvent>& events) const {
     if (!trajectory.died) return;
     const ParentRule& rule = *emitter.description().parent;
     std::uint32_t count = children_of_event(emitter, trajectory.particle, 0);
     if (rule.share) count = std::max(count, 1U);
-    const Trajectory::Knot& last = trajectory.knots.back();
+    const FlightKnot& last = trajectory.knots.back();
     // Children of a parent that a surface has absorbed start with the parent's velocity of arrival. Fragments of this
-    // parent start at rest. The surface has received the parent's momentum already, and must not receive it again from
-    // the fragments.
+    // parent start at rest, because the surface has already received the parent's momentum.
     const bool absorbed = !trajectory.records.empty() && last.time == trajectory.records.back().time;
-    spawn_generations.push_back({last.time, emitter.number(), 0, count, rule.share,
-                                 trajectory.at(last, absorbed && !rule.share ? last.before : last.after),
-                                 trajectory.entry});
+    events.push_back(
+        trajectory.event(emitter, last.time, 0, count, rule.share,
+                         trajectory.at(last.position, absorbed && !rule.share ? last.before : last.after)));
 }
 
-void Offspring::add_birth(const Emitter& emitter, const Trajectory& trajectory,
-                          std::vector<SpawnGeneration>& spawn_generations) const {
+void Offspring::add_birth(const Emitter& emitter, const Trajectory& trajectory, std::vector<SpawnEvent>& events) const {
     const std::uint64_t count =
         std::min<std::uint64_t>(children_of_event(emitter, trajectory.particle, 0), emitter.description().limit);
-    const Trajectory::Knot& first = trajectory.knots.front();
-    spawn_generations.push_back({first.time, emitter.number(), 0, static_cast<std::uint32_t>(count), false,
-                                 trajectory.at(first, first.after), trajectory.entry});
+    const FlightKnot& first = trajectory.knots.front();
+    events.push_back(trajectory.event(emitter, first.time, 0, static_cast<std::uint32_t>(count), false,
+                                      trajectory.at(first.position, first.after)));
 }
 
 std::vector<Child> Offspring::after_move(Particles& particles, double from, double to,
                                          std::vector<ContactRecord> records, OffspringCounts& counts) const {
     const RecordsByParticle sorted(std::move(records));
     const std::size_t count = positions_.size();
-    std::vector<std::vector<SpawnGeneration>> blocks((count + kBlock - 1) / kBlock);
-    const std::uint64_t room = room_below(limits_.most_particles, parts_.share.living(particles.size()));
+    std::vector<std::vector<SpawnEvent>> blocks((count + kBlock - 1) / kBlock);
+    const std::uint64_t room = room_below(parts_.options.most_particles, parts_.share.living(particles.size()));
     const std::uint64_t fitting = parts_.memory.room(particles.size());
     std::atomic<std::uint64_t> gathered{0};
     parallel_for_blocks(count, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
@@ -214,44 +206,30 @@ std::vector<Child> Offspring::after_move(Particles& particles, double from, doub
                     add_birth(emitter, trajectory, blocks[block]);
                 }
             }
-            // Spawn generations are limited like particles, because a SpawnGeneration needs no more memory than a
-            // particle.
+            // Events are limited like particles, because an event needs no more memory than a particle.
             const std::uint64_t more = blocks[block].size() - std::exchange(counted, blocks[block].size());
             if (gathered.fetch_add(more, std::memory_order_relaxed) + more > fitting + count) {
                 parts_.memory.refuse_to_grow(particles.size());
             }
         }
     });
-    std::vector<SpawnGeneration> spawn_generations;
-    for (std::vector<SpawnGeneration>& block : blocks) {
-        spawn_generations.insert(spawn_generations.end(), std::make_move_iterator(block.begin()),
-                                 std::make_move_iterator(block.end()));
+    std::vector<SpawnEvent> events;
+    for (std::vector<SpawnEvent>& block : blocks) {
+        events.insert(events.end(), std::make_move_iterator(block.begin()), std::make_move_iterator(block.end()));
     }
-    return spawn(spawn_generations, particles.size(), counts);
+    return spawn(events, particles.size(), counts);
 }
 
-std::vector<Offspring::Claim> Offspring::claims_of(const std::vector<SpawnGeneration>& spawn_generations) {
-    std::vector<Claim> claims;
-    claims.reserve(spawn_generations.size());
-    for (const SpawnGeneration& spawn_generation : spawn_generations) {
-        claims.push_back({spawn_generation.time, spawn_generation.parent.id, spawn_generation.emitter,
-                          spawn_generation.first_ordinal, spawn_generation.count,
-                          spawn_generation.parent.origin.generation, spawn_generation.parent.mass,
-                          spawn_generation.share});
-    }
-    return claims;
-}
-
-/// Decides how many children each spawn generation may have. The spawn generations are processed in their order.
+/// Decides how many children each event may have, in the order of the events.
 void Offspring::allot(std::vector<Claim>& claims, std::uint64_t living, std::uint64_t most_that_fit,
                       OffspringCounts& counts) const {
     for (Claim& claim : claims) {
-        if (claim.generation >= limits_.max_depth) {
+        if (claim.generation >= parts_.options.max_depth) {
             counts.refused_by_depth += claim.count;
             continue;
         }
         if (claim.share) --living;  // fragments replace their parent
-        const std::uint64_t room = room_below(limits_.most_particles, living);
+        const std::uint64_t room = room_below(parts_.options.most_particles, living);
         const std::uint32_t most = claim.share ? most_fragments(claim.mass) : claim.count;
         claim.allowed = static_cast<std::uint32_t>(
             std::min<std::uint64_t>({claim.count, most, std::max<std::uint64_t>(room, claim.share ? 1 : 0)}));
@@ -264,57 +242,50 @@ void Offspring::allot(std::vector<Claim>& claims, std::uint64_t living, std::uin
 }
 
 /// Does the work of allot() if several ranks share the run. Each rank has the claims of all ranks, and makes the same
-/// decisions. The spawn generations of one parent are on one rank.
+/// decisions. The events of one parent are on one rank.
 void Offspring::allot_together(std::vector<Claim>& mine, std::size_t here, OffspringCounts& counts) const {
     const auto rank = static_cast<std::uint32_t>(parts_.share.ranks().rank());
-    for (std::size_t k = 0; k < mine.size(); ++k) mine[k].rank = rank, mine[k].spawn_generation = k;
+    for (std::size_t k = 0; k < mine.size(); ++k) mine[k].rank = rank, mine[k].event = k;
     std::vector<Claim> all = gather_list_to_all(parts_.share.ranks(), mine);
-    std::stable_sort(all.begin(), all.end(), [](const Claim& a, const Claim& b) {
-        return std::tuple(a.time, a.parent, a.emitter, a.first_ordinal) <
-               std::tuple(b.time, b.parent, b.emitter, b.first_ordinal);
-    });
+    std::stable_sort(all.begin(), all.end(), [](const Claim& a, const Claim& b) { return a.precedes(b); });
     allot(all, parts_.share.living(here), std::numeric_limits<std::uint64_t>::max(), counts);
     std::uint64_t born_here = 0;
     for (const Claim& claim : all) {
         if (claim.rank != rank) continue;
-        mine[claim.spawn_generation] = claim;
+        mine[claim.event] = claim;
         born_here += claim.allowed;
     }
     if (born_here > parts_.memory.room(here)) parts_.memory.refuse_to_grow(here);
 }
 
-Child Offspring::child_of(const SpawnGeneration& spawn_generation, Particle&& particle, std::uint64_t number) const {
+Child Offspring::child_of(const SpawnEvent& event, Particle&& particle, std::uint64_t number) const {
     const std::size_t colliders = positions_.empty() ? 0 : sides_.size() / positions_.size();
-    const auto sides = std::span(sides_).subspan(spawn_generation.entry * colliders, colliders);
-    const bool is_fragment = spawn_generation.share &&
-                             parts_.emitters[spawn_generation.emitter].description().parent->on == BirthEvent::impact;
-    return {std::move(particle), positions_[spawn_generation.entry], sides, is_fragment, number, std::nullopt};
+    const auto sides = std::span(sides_).subspan(event.entry * colliders, colliders);
+    const bool is_fragment =
+        event.claim.share && parts_.emitters[event.claim.emitter].description().parent->on == BirthEvent::impact;
+    return {std::move(particle), positions_[event.entry], sides, is_fragment, number, std::nullopt};
 }
 
 /// Adds a child of a cloud. If no position is free, the number of the child stays unused.
-void Offspring::add_cloud_child(const SpawnGeneration& spawn_generation, std::uint32_t ordinal, std::uint64_t number,
+void Offspring::add_cloud_child(const SpawnEvent& event, std::uint32_t ordinal, std::uint64_t number,
                                 std::vector<Child>& children, OffspringCounts& counts) const {
-    const auto has_place = [&](const Particle& child) {
-        return parts_.scene.has_room_beside(spawn_generation.parent, child);
-    };
-    std::optional<CloudChild> made = make_cloud_child(
-        parts_.emitters[spawn_generation.emitter], spawn_generation.parent, ordinal, spawn_generation.time, has_place);
+    const auto has_place = [&](const Particle& child) { return parts_.scene.has_room_beside(event.parent, child); };
+    std::optional<CloudChild> made =
+        make_cloud_child(parts_.emitters[event.claim.emitter], event.parent, ordinal, event.claim.time, has_place);
     if (!made) {
         ++counts.refused_by_overlap;
         return;
     }
-    children.push_back(child_of(spawn_generation, std::move(made->particle), number));
-    children.back().cloud = CloudMembership{spawn_generation.parent.id, made->offset};
+    children.push_back(child_of(event, std::move(made->particle), number));
+    children.back().cloud = CloudMembership{event.parent.id, made->offset};
 }
 
-std::vector<Child> Offspring::spawn(std::vector<SpawnGeneration>& spawn_generations, std::size_t here,
-                                    OffspringCounts& counts) const {
-    std::stable_sort(spawn_generations.begin(), spawn_generations.end(),
-                     [](const SpawnGeneration& a, const SpawnGeneration& b) {
-                         return std::tuple(a.time, a.parent.id, a.emitter, a.first_ordinal) <
-                                std::tuple(b.time, b.parent.id, b.emitter, b.first_ordinal);
-                     });
-    std::vector<Claim> claims = claims_of(spawn_generations);
+std::vector<Child> Offspring::spawn(std::vector<SpawnEvent>& events, std::size_t here, OffspringCounts& counts) const {
+    std::stable_sort(events.begin(), events.end(),
+                     [](const SpawnEvent& a, const SpawnEvent& b) { return a.claim.precedes(b.claim); });
+    std::vector<Claim> claims;
+    claims.reserve(events.size());
+    for (const SpawnEvent& event : events) claims.push_back(event.claim);
     if (parts_.share.is_alone()) {
         allot(claims, here, parts_.memory.most(), counts);
     } else {
@@ -324,27 +295,26 @@ std::vector<Child> Offspring::spawn(std::vector<SpawnGeneration>& spawn_generati
     std::size_t born_here = 0;
     for (const Claim& claim : claims) born_here += claim.allowed;
     children.reserve(born_here);
-    for (std::size_t i = 0; i < spawn_generations.size(); ++i) {
-        const SpawnGeneration& spawn_generation = spawn_generations[i];
+    for (std::size_t i = 0; i < events.size(); ++i) {
+        const SpawnEvent& event = events[i];
         const Claim& claim = claims[i];
         if (claim.allowed == 0) continue;
-        const Emitter& emitter = parts_.emitters[spawn_generation.emitter];
+        const Emitter& emitter = parts_.emitters[claim.emitter];
         std::uint64_t number = claim.first;
-        if (spawn_generation.share) {
-            for (Particle& fragment : make_fragments(emitter, spawn_generation.parent, claim.allowed,
-                                                     spawn_generation.first_ordinal, spawn_generation.time)) {
-                children.push_back(child_of(spawn_generation, std::move(fragment), number++));
+        if (claim.share) {
+            for (Particle& fragment :
+                 make_fragments(emitter, event.parent, claim.allowed, claim.first_ordinal, claim.time)) {
+                children.push_back(child_of(event, std::move(fragment), number++));
             }
             continue;
         }
         for (std::uint32_t k = 0; k < claim.allowed; ++k) {
+            const std::uint32_t ordinal = claim.first_ordinal + k;
             if (emitter.description().parent->cloud) {
-                add_cloud_child(spawn_generation, spawn_generation.first_ordinal + k, number++, children, counts);
-                continue;
+                add_cloud_child(event, ordinal, number++, children, counts);
+            } else {
+                children.push_back(child_of(event, make_child(emitter, event.parent, ordinal, claim.time), number++));
             }
-            Particle child =
-                make_child(emitter, spawn_generation.parent, spawn_generation.first_ordinal + k, spawn_generation.time);
-            children.push_back(child_of(spawn_generation, std::move(child), number++));
         }
     }
     return children;

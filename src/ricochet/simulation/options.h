@@ -9,9 +9,8 @@
 
 namespace ricochet {
 
-/// Default for the largest number of living particles. So many particles need some forty gigabytes, about the memory of
-/// the largest single-processor machines. No run has needed so many. The number is fixed, so that all machines refuse
-/// the same births.
+/// Default for the largest number of living particles. They need some forty gigabytes, about the memory of the largest
+/// single-processor machines. The number is fixed, so that all machines refuse the same births.
 inline constexpr std::uint64_t kDefaultMostParticles = 100'000'000;
 
 /// Options for the time steps, for the response to impacts, and for the recorded data of a run.
@@ -21,8 +20,7 @@ struct SimulationOptions : ResponseSettings {
     double duration = 1.0;
     ResponseKind response = ResponseKind::exact;  ///< method that resolves impacts
     bool record_contacts = false;                 ///< record every impact of the last step, see contact_records()
-    /// Check every segment, side and distance with independent code, see verify/verifier.h. Results are bitwise the
-    /// same with and without the check.
+    /// Check every segment, side and distance with independent code, see verify/verifier.h, without changing results.
     bool verify = false;
     bool triangle_totals = true;   ///< record hits and impulse per triangle (56 bytes per triangle)
     double frame_rate = 24.0;      ///< frames per second for emission rates per frame, > 0
@@ -30,13 +28,12 @@ struct SimulationOptions : ResponseSettings {
                                    ///< particles
     /// Largest number of living particles, < 2^32. Births beyond it are refused and counted.
     std::uint64_t most_particles = kDefaultMostParticles;
-    /// Contact between spheres, which requires the exact response. Without a value, spheres pass through each other.
-    /// Points never collide with each other.
+    /// Contact between spheres, only with the exact response. Without it, spheres pass through each other, as points
+    /// do.
     std::optional<PairContactSettings> particle_contacts = std::nullopt;
 };
 
-/// Accelerations of a simulation. Tests and benchmarks can switch off each of them separately. Results are bitwise the
-/// same without them.
+/// Accelerations of a simulation, which change no bit. Tests and benchmarks can switch off each of them separately.
 struct AccelerationSwitches {
     bool look_ahead = true;      ///< particles that certainly hit nothing are not queried
     bool deferred_steps = true;  ///< steps of free flights are integrated together, see Simulation::advance()

@@ -17,8 +17,8 @@ constexpr std::size_t kPairMotionBlock = 16;
 /// Number of members between the prefetch of a member and its use, because neighbours in space are scattered in memory.
 constexpr std::size_t kPairMotionPrefetchDistance = 6;
 
-/// Returns the impact rules for the verifier. They come from the settings and not from the table that moves spheres, so
-/// that the verifier is independent.
+/// Returns the impact rules for the verifier, which come from the settings, independent of the table that moves
+/// spheres.
 verify::ImpactAudit impact_audit_of(const PairParts& parts) {
     const PairContactSettings& settings = parts.settings;
     const ResponseRules& rules = parts.response.rules();
@@ -79,8 +79,7 @@ void PairMotion::before_substep(const ParticleRange& range, const TimeSpan& step
     }
 }
 
-/// Wakes the sleepers that islands have pushed. Must be called before results are stored. Returns false if no sleeper
-/// was pushed.
+/// Wakes the sleepers that islands have pushed, before results are stored. Returns false without such sleepers.
 bool PairMotion::wake_loaded_sleepers(const TimeSpan& step) {
     std::vector<std::uint64_t> loaded;
     for (const IslandBuilder::Island& island : islands_.all()) {
@@ -99,23 +98,19 @@ void PairMotion::after_substep(const ParticleRange& /*generation*/, const TimeSp
     parallel_for_blocks(islands.size(), kPairMotionBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) write_back(islands[n].members, step, blocks[first_block + block]);
     });
-    std::vector<PairImpactRecord> impacts;
-    std::vector<PairMeeting> meetings;
+    const std::vector<PairImpactRecord> impacts = joined(islands, &IslandBuilder::Island::impacts);
     std::vector<const ContactIslandTrace*> traces;
     for (const IslandBuilder::Island& island : islands) {
-        impacts.insert(impacts.end(), island.impacts.begin(), island.impacts.end());
-        meetings.insert(meetings.end(), island.meetings.begin(), island.meetings.end());
         if (island.is_contact_island) traces.push_back(&island.trace);
         unsolved_ += island.trace.is_unsolved ? 1 : 0;
     }
     contacts_.check_sleepers(step, blocks);
     contacts_.end(traces, impacts, step);
-    record_impacts(impacts, meetings, step.end);
+    record_impacts(impacts, joined(islands, &IslandBuilder::Island::meetings), step.end);
     islands.clear();
 }
 
-/// Records the impacts of a substep, island by island. meetings: data of the same impacts for the verifier. time: end
-/// of the substep, in s.
+/// Records the impacts of a substep, island by island. meetings: the same for the verifier. time: its end, in s.
 void PairMotion::record_impacts(const std::vector<PairImpactRecord>& impacts, const std::vector<PairMeeting>& meetings,
                                 double time) {
     SimulationStatistics& statistics = recorder_.statistics();

@@ -24,8 +24,7 @@ public:
     /// All arguments must outlive the object.
     PairMotion(const PairParts& parts, RunRecorder& recorder, MoveObservers& observers);
 
-    /// Returns one flag per particle. It is 1 if other spheres, or walls together with other spheres, supported the
-    /// particle in the last step.
+    /// Returns a flag per particle: 1 if other spheres, or walls with them, supported it in the last step.
     [[nodiscard]] std::vector<std::uint8_t> pressing() const { return contacts_.pressing(); }
 
     /// Solves the islands among the particles of the generation. Other code does not move the members in this step.

@@ -4,7 +4,6 @@
 #include <iterator>
 #include <utility>
 
-#include "ricochet/core/box_tools.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/sweep/pair_sweep.h"
@@ -18,6 +17,20 @@ namespace {
 constexpr int kDeflections = 2;
 
 }  // namespace
+
+void SleeperGrid::update(const PairTraces& traces, const Particles& particles, std::size_t first) {
+    if (version_ == traces.version && is_asleep_ == traces.is_asleep) return;
+    is_asleep_ = traces.is_asleep;
+    version_ = traces.version;
+    boxes_.assign(is_asleep_.size(), {});
+    bounds_ = {};
+    for (std::size_t k = 0; k < is_asleep_.size(); ++k) {
+        if (is_asleep_[k] == 0) continue;
+        boxes_[k] = ball_box(particles.position[first + k], particles.radius[first + k]);
+        bounds_.include(boxes_[k]);
+    }
+    static_cast<void>(grid_.find_pairs(boxes_));
+}
 
 void PairPlans::find(const ParticleRange& range, const TimeSpan& step, const PairTraces& traces) {
     alone_.begin(range, step, traces);
@@ -55,9 +68,9 @@ void PairPlans::collect_pairs() {
     });
 }
 
-/// Marks free spheres that fly onto bound spheres as bound, because they will be deflected. Declares the boxes that
-/// they can reach. Bound spheres rest, press on others, or are expected to be deflected. Returns false if no free
-/// sphere was marked.
+/// Marks free spheres that fly onto bound spheres as bound, because they will be deflected, and declares the boxes that
+/// they can reach. Bound spheres rest, press on others, or are expected to be deflected. Returns false without such
+/// spheres.
 bool PairPlans::expect_deflections() {
     if (!parts_.may_be_contact_island()) return false;
     std::vector<std::uint32_t> deflected;
@@ -153,8 +166,8 @@ bool PairPlans::do_meet(const NeighbourPair& pair) const {
     const double a = alone_.radius(pair.first);
     const double b = alone_.radius(pair.second);
     if (first_meeting({&first, 1}, {&second, 1}, a + b, 0.0)) return true;
-    // first_meeting() finds nothing for two touching spheres that forces drive into each other. Only a contact island
-    // can keep such spheres apart.
+    // first_meeting() misses touching spheres that forces drive into each other, which only a contact island keeps
+    // apart.
     return parts_.may_be_contact_island() &&
            has_sunk(a + b, std::min(a, b), second.path.c[0] - first.path.c[0], second.path.end - first.path.end);
 }

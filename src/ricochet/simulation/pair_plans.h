@@ -9,16 +9,38 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
+#include "ricochet/core/box_tools.h"
+#include "ricochet/dynamics/neighbour_grid.h"
 #include "ricochet/dynamics/neighbour_pairs.h"
 #include "ricochet/response/event_island.h"
 #include "ricochet/simulation/lone_motion.h"
 #include "ricochet/simulation/pair_parts.h"
-#include "ricochet/simulation/sleeper_grid.h"
 
 namespace ricochet {
+
+/// The boxes of sleeping spheres, by number in a range of particles. The grid is kept as long as the same ones sleep.
+class SleeperGrid {
+public:
+    /// Computes the boxes again if the set of sleeping spheres has changed. first: first particle of the range.
+    void update(const PairTraces& traces, const Particles& particles, std::size_t first);
+
+    [[nodiscard]] bool empty() const { return bounds_.empty(); }
+    /// Returns the box of a sleeping sphere.
+    [[nodiscard]] const Box3& box(std::uint32_t k) const { return boxes_[k]; }
+    /// Returns false if a box is far from all sleepers.
+    [[nodiscard]] bool may_be_near(const Box3& box) const { return overlap(box, bounds_); }
+    /// Appends all sleepers whose boxes are near a box.
+    void find_near(const Box3& box, std::vector<std::uint32_t>& found) const { grid_.find_near(box, found); }
+
+private:
+    NeighbourGrid grid_;
+    std::vector<Box3> boxes_;
+    Box3 bounds_;                          // box around all sleepers
+    std::vector<std::uint8_t> is_asleep_;  // PairTraces::is_asleep of the boxes
+    std::uint64_t version_ = 0;            // of the sleeping islands
+};
 
 /// The declarations of the spheres of a range, and the pairs of spheres that may meet. See the top of this file.
 class PairPlans {
@@ -29,8 +51,7 @@ public:
     /// live as long as the plans are used. The other functions identify a particle by its number in the range.
     void find(const ParticleRange& range, const TimeSpan& step, const PairTraces& traces);
 
-    /// Returns the pairs of spheres whose boxes are near each other, if at least one of the spheres moves. The result
-    /// includes all pairs that may meet.
+    /// Returns the pairs of spheres whose boxes are near each other, of which one moves: all that may meet, and more.
     [[nodiscard]] const std::vector<NeighbourPair>& pairs() const { return pairs_; }
     /// Returns true if the spheres of a pair, given by its number, may meet.
     [[nodiscard]] bool may_meet(std::size_t pair) const { return met_[pair] != 0; }
@@ -43,8 +64,7 @@ public:
     void find_near(const Box3& box, std::vector<std::uint32_t>& found) const;
     /// Tests which of these spheres fly freely. Skips spheres for which this is known.
     void test_free_flight(std::vector<std::uint32_t> particles);
-    /// Returns true if a sphere flies freely. test_free_flight() must have tested the sphere before. It has tested all
-    /// spheres of pairs().
+    /// Returns true if a sphere flies freely. test_free_flight() must have tested it, as all spheres of pairs().
     [[nodiscard]] bool is_free(std::uint32_t k) const { return freedom_[k] == Freedom::free; }
     [[nodiscard]] const Box3& box(std::uint32_t k) const { return boxes_[k]; }
     /// Returns true if a member's path meets a sphere of another island that stays within its declared bounds. The

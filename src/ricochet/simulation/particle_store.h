@@ -1,6 +1,5 @@
 /// \file
-/// Private to the simulation: the particles, with the state that the response keeps for each of them, and their
-/// transfer to and from the response.
+/// Private to the simulation: particles with the state that the response keeps for each, and their transfer to it.
 #pragma once
 
 #include <cmath>
@@ -68,8 +67,7 @@ public:
     }
 
     /// Returns particle i for a move by the response from `start`, in s. in_contact: true if the arrays may contain a
-    /// contact of the particle. Otherwise the contact arrays are not read, because each read costs a cache miss for
-    /// particles in arbitrary order.
+    /// contact of the particle. Otherwise they are not read, because each read costs a cache miss.
     [[nodiscard]] MovingParticle load(std::size_t i, double start, bool in_contact);
     /// Stores a particle after a move. in_contact: true if the arrays may contain a contact of the particle, or if the
     /// particle has a contact now. may_be_supported: false for a particle on which other particles act.

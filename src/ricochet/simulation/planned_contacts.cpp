@@ -13,12 +13,10 @@ namespace {
 /// Members per unit of parallel work.
 constexpr std::size_t kPlannedContactsBlock = 64;
 
-/// Fraction of the slip of a solid sphere that friction must remove for rolling: 1 / (1 + 5/2). A mathematical
-/// constant.
+/// Part of a solid sphere's slip that friction must remove for rolling: 1 / (1 + 5/2). A mathematical constant.
 constexpr double kRollingShare = 2.0 / 7.0;
 
-/// Displacement by a force that grows linearly from 0, divided by its final acceleration and by the square of the step.
-/// A mathematical constant.
+/// Displacement by a linearly growing force, divided by final acceleration and squared step. A mathematical constant.
 constexpr double kLedBy = 1.0 / 6.0;
 
 }  // namespace
@@ -86,10 +84,9 @@ std::vector<Vec3> PlannedContacts::find_curvature_deviations(const ParticleSyste
     return result;
 }
 
-/// Returns the support constraints of a contact. Along the normals, the member moves to the surface and, if it
-/// rebounds, away from the surface. From the impact on, friction stops a point or makes a sphere roll, within the
-/// friction limit. Friction removes a share of the slip that would exist without friction. So friction is proportional
-/// to the remaining slip.
+/// Returns the support constraints of a contact. Along the normals, the member moves to the surface and perhaps
+/// rebounds. From the impact on, friction stops a point or makes a sphere roll, within the friction limit. It removes a
+/// share of the slip without friction, so it is proportional to the remaining slip.
 SupportConstraints PlannedContacts::find_supports(const Flown& flown, const Contact& contact) const {
     SupportConstraints supports;
     const double part = contact.time / flown.duration;

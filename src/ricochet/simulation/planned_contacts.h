@@ -22,18 +22,16 @@ public:
     PlannedContacts(const CollisionWorld& world, std::span<const Material> materials, double resting_speed)
         : world_(world), materials_(materials), resting_speed_(resting_speed) {}
 
-    /// Returns the support constraints of each member. Members are assumed to move along straight lines. velocities:
-    /// velocities along the lines, in m/s. duration: s. least_compliance: lower bound of SupportConstraints::yield,
-    /// divided by the largest velocity. Newton's method needs a finite slope, so a member that friction stops may keep
-    /// slip up to this bound.
+    /// Returns the support constraints of each member for straight motion with `velocities`, in m/s, for `duration`, in
+    /// s. least_compliance: lower bound of SupportConstraints::yield, divided by the largest velocity. Newton's method
+    /// needs a finite slope, so a member that friction stops may keep slip up to this bound.
     [[nodiscard]] std::vector<SupportConstraints> find(const ParticleSystem& system, std::span<const Vec3> velocities,
                                                        std::span<const Vec3> spins, double duration,
                                                        double least_compliance) const;
 
-    /// Returns the deviation, in m, of each constrained member from its straight motion in a step. The cause is the
-    /// curvature of surfaces. The deviation has two parts. The first part is the distance to the surface at the end of
-    /// the step. The second part is the motion along the surface by a contact force whose direction turns with the
-    /// surface.
+    /// Returns the deviation, in m, of each constrained member from its straight motion in a step, by the curvature of
+    /// surfaces. It is the distance to the surface at the end of the step, plus the motion along the surface by a
+    /// contact force whose direction turns with it.
     [[nodiscard]] std::vector<Vec3> find_curvature_deviations(const ParticleSystem& system, const SystemStep& step,
                                                               std::span<const SupportConstraints> supports) const;
 

@@ -18,8 +18,7 @@ constexpr std::size_t kArrivals = 16384;
 /// Particles per unit of parallel work, which takes some hundred microseconds.
 constexpr std::size_t kArrivalBlock = 64;
 
-/// Returns true if contacts are searched at a birth. They can continue only if the response lets particles slide and
-/// rest exactly.
+/// Returns true if contacts are searched at a birth, because the response lets particles slide and rest exactly.
 bool finds_contacts(const SimulationOptions& options, const Response& response) {
     return options.response == ResponseKind::exact && !options.flow && !response.keeps_sides();
 }
@@ -193,8 +192,7 @@ void Population::bind() const {
     parts_.modules.each([](Module& module) { module.bind(); });
 }
 
-// Reorders the active set only for `exact`. The other responses sum penetration depths block by block, and different
-// blocks would change the rounding of this sum.
+// Reorders the active set only for `exact`. Others sum depths block by block, with a rounding that depends on blocks.
 ActiveSet Population::advance(const ParticleRange& range, const TimeSpan& part, std::vector<BlockRecord>& blocks) {
     ActiveSet active = flights_.advance(range, part, blocks);
     if (parts_.options.response != ResponseKind::exact) return active;

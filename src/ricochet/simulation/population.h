@@ -55,8 +55,7 @@ public:
 
     // Motion.
 
-    /// Advances the particles of the range that are in free flight. Returns the particles that need a query, divided
-    /// into blocks and sorted for speed.
+    /// Advances the range's particles in free flight. Returns those that need a query, in blocks and sorted for speed.
     [[nodiscard]] ActiveSet advance(const ParticleRange& range, const TimeSpan& part, std::vector<BlockRecord>& blocks);
     /// Returns true if particles in free flight may defer their steps, because no module reads their positions.
     [[nodiscard]] bool may_defer() const;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "ricochet/core/algorithms.h"
-
 namespace ricochet {
 
 void QuerySchedule::begin_step(std::uint64_t step) {
@@ -23,8 +21,7 @@ void QuerySchedule::set_flying(std::size_t i, const FreeFlightForecast& forecast
 // Returns the candidates of a forecast if they are complete for the whole step of the query. A last step that is not
 // exactly whole gets no candidates, because rounding can make it longer.
 ContactCandidates QuerySchedule::candidates_for(std::uint32_t next, const FreeFlightForecast& forecast) const {
-    const std::uint64_t end = std::max<std::uint64_t>(next, step_ + 2);  // end of the step of the query, as a number of
-                                                                         // steps
+    const std::uint64_t end = std::max<std::uint64_t>(next, step_ + 2);  // number of steps at the end of that step
     if (end >= clock_.steps() && !clock_.last_is_whole()) return {};
     return forecast.candidates_until >= clock_.time_at(end) ? forecast.candidates : ContactCandidates{};
 }

@@ -16,16 +16,14 @@
 
 namespace ricochet {
 
-// The times at which a run's steps begin and end.
-
 /// An interval of simulation time, s.
 struct TimeSpan {
     double begin = 0.0;
     double end = 0.0;
 };
 
-/// Clock with equal steps from 0 to the end of the run. The last step ends there. It can be shorter than the other
-/// steps, or longer by less than the fraction kStepRounding.
+/// Clock with equal steps from 0 to the end of the run. The last step ends there. It can be shorter than the others,
+/// or longer by less than the fraction kStepRounding.
 class StepClock {
 public:
     /// time_step > 0, duration >= 0, both finite, in s.
@@ -37,8 +35,7 @@ public:
 
     /// Returns the number of steps of the whole run.
     [[nodiscard]] std::uint64_t steps() const { return steps_; }
-    /// Returns the time, in s, at which a step begins. For steps() and larger numbers, the result is the end of the
-    /// run.
+    /// Returns the time, in s, at which a step begins; the end of the run for steps() and larger numbers.
     [[nodiscard]] double time_at(std::uint64_t step) const {
         return step >= steps_ ? duration_ : static_cast<double>(step) * time_step_;
     }
@@ -60,51 +57,37 @@ private:
     std::uint64_t steps_;
 };
 
-/// State of a particle in the present step.
-enum class QueryState : std::uint8_t {
-    unknown,      ///< the particle is queried, and may be in contact
-    flying,       ///< the particle is queried; it had no contact at the end of its last step
-    free_flight,  ///< the particle certainly hits nothing, so it is not queried
-    left_alone,   ///< the particle is pinned, frozen, asleep or about to be removed, so it is not queried
-};
-
 /// Forecast by the look-ahead in a particle's last query. It applies if the particle is in flight.
 struct FreeFlightForecast {
-    /// S, the particle certainly hits nothing before this time; not known if in the past.
-    double free_until = 0.0;
-    double candidates_until = 0.0;      ///< s, only the candidates come near the particle's path before this time
+    double free_until = 0.0;            ///< s, the particle certainly hits nothing before; not known if in the past
+    double candidates_until = 0.0;      ///< s, only the candidates come near the particle's path before
     ClearBall clear = {};               ///< free space around the particle, if it is known
     ContactCandidates candidates = {};  ///< valid only if candidates_until is in the future
 };
 
-/// State of every particle, in four bytes per particle, and the candidates of its next query. A scan over the states
-/// finds the active set of a step in a fraction of the time of the moves. The schedule affects only the speed of a run.
-/// If the state of every particle were unknown, results would be bitwise the same.
+/// State of every particle, in four bytes per particle, and the candidates of its next query. A particle is:
+/// - in free flight: it certainly hits nothing, so it is not queried.
+/// - left alone: it is pinned, frozen, asleep or about to be removed, so it is not queried.
+/// - active: it is queried. It may be in contact if its state is unknown.
+/// A scan over the states finds the active set of a step in a fraction of the time of the moves. The schedule affects
+/// only the speed of a run. If the state of every particle were unknown, results would be bitwise the same.
 class QuerySchedule {
 public:
-    /// clock must outlive the object. keeps_clear_balls: clear() returns the balls of forecasts. Steps under uniform
-    /// forces do not use them.
+    /// clock must outlive the object. keeps_clear_balls: clear() returns balls, which uniform forces do not need.
     explicit QuerySchedule(const StepClock& clock, bool keeps_clear_balls = false)
         : clock_(clock), keeps_clear_balls_(keeps_clear_balls) {}
 
     /// Begins a step. The functions below then return the states of particles in this step.
     void begin_step(std::uint64_t step);
 
-    [[nodiscard]] QueryState state(std::size_t i) const {
-        if (is_left_alone(i)) return QueryState::left_alone;
-        if (is_in_free_flight(i)) return QueryState::free_flight;
-        return next_[i] == kUnknown ? QueryState::unknown : QueryState::flying;
-    }
     [[nodiscard]] bool is_left_alone(std::size_t i) const { return next_[i] == kLeftAlone; }
     [[nodiscard]] bool is_in_free_flight(std::size_t i) const { return is_free(next_[i], now_); }
-    /// Returns true if the particles' arrays contain no contact of particle i, so that the contact arrays need not be
-    /// read.
+    /// Returns true if the arrays contain no contact of particle i, and need not be read.
     [[nodiscard]] bool is_without_contact(std::size_t i) const {
         return next_[i] != kLeftAlone && next_[i] != kUnknown;
     }
     /// Returns the triangles that come near the path in the next query, if they are known.
     [[nodiscard]] const ContactCandidates& candidates(std::size_t i) const { return candidates_[i]; }
-
     /// Returns the free space that an earlier query has found around the particle; radius 0 if none is known.
     [[nodiscard]] ClearBall clear(std::size_t i) const { return keeps_clear_balls_ ? clear_[i] : ClearBall{}; }
 
@@ -135,8 +118,7 @@ public:
             begin, end, [next, now = now_](std::size_t i) { return !is_free(next[i], now); }, visit);
     }
 
-    /// The next three functions set the state of a particle after its move. Several threads may call them for different
-    /// particles.
+    /// These functions set a particle's state after its move, on any thread for different particles.
     void leave_alone(std::size_t i) { set(i, kLeftAlone, {}, {}); }
     void forget(std::size_t i, const ClearBall& clear = {}) { set(i, kUnknown, {}, clear); }
     void set_flying(std::size_t i, const FreeFlightForecast& forecast);
@@ -161,10 +143,10 @@ public:
     }
 
 private:
-    // Each particle has a number: one more than the step of its next query, or one of two marks. The marks are the
-    // smallest and the largest number. Therefore a particle is active if its number is at most the number of the
-    // present step. A particle is in free flight if its number is still larger after 1 is added to both numbers. The
-    // addition turns the largest number into 0, so that one comparison also excludes this mark.
+    // Each particle has a number: one more than the step of its next query, or one of two marks, the smallest and the
+    // largest number. A particle is active if its number is at most the number of the present step. It is in free
+    // flight if its number is still larger after 1 is added to both numbers. The addition turns the largest number
+    // into 0, so that one comparison also excludes this mark.
     static constexpr std::uint32_t kUnknown = 0;
     static constexpr std::uint32_t kLeftAlone = std::numeric_limits<std::uint32_t>::max();
 

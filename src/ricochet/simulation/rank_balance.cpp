@@ -8,15 +8,13 @@
 namespace ricochet {
 namespace {
 
-/// Costs per particle or impact, in tens of nanoseconds (docs/design/many-machines.md). Wrong values distribute the
-/// work unevenly, but do not change results.
+/// Costs per particle or impact, in tens of nanoseconds (docs/design/many-machines.md), which do not change results.
 constexpr std::uint64_t kQueriedWork = 150;
 constexpr std::uint64_t kContactWork = 150;
 constexpr std::uint64_t kFlyingWork = 6;
 constexpr std::uint64_t kIdleWork = 1;
 
-/// The inverse of the golden ratio. For any number of multiples, their fractional parts fill the unit interval evenly.
-/// A mathematical constant.
+/// The inverse of the golden ratio, whose multiples fill the unit interval evenly. A mathematical constant.
 constexpr double kGoldenPart = 0.6180339887498949;
 
 double most_of(const std::vector<std::uint64_t>& work) {

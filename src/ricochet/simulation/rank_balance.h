@@ -37,11 +37,9 @@ public:
     static constexpr std::uint64_t kSteps = 4;
     /// Number of checks after which the sums of work start again from 0.
     static constexpr std::uint64_t kChecks = 4;
-    /// Ratio of the busiest rank's work to the mean work above which particles change ranks. Local, because only the
-    /// cost depends on it.
+    /// Busiest rank's work divided by the mean above which particles change ranks. Local: only the cost depends on it.
     static constexpr double kMostBusy = 1.1;
-    /// Smallest work above the mean that is worth the communication: a tenth of a millisecond. Local, because only the
-    /// cost depends on it.
+    /// Least work above the mean that is worth communication: 0.1 ms. Local: only the cost depends on it.
     static constexpr double kLeastExcess = 1e4;
     /// Cost of inserting transferred particles into a rank, as work per particle of the rank. A smaller excess of work
     /// waits for more checks. Local, because only the cost depends on it.

@@ -1,13 +1,12 @@
 /// \file
 /// Private to the simulation: the part of a run that one process has if several processes share the run.
 ///
-/// Each rank has the whole scene and moves its own particles. All ranks run the same schedules of emitters. The
-/// position of a birth in the schedules determines the rank that makes the particle and on which it lives (births.h).
-/// The id of a particle of the setup determines its rank. A child lives on the rank of its parent. Particles joined by
-/// springs live on the first rank, which plans their motion. The other ranks divide a step into the same substeps. Each
-/// rank keeps its own sums if they do not depend on the order of their terms. For other sums (unsimulated time, loads
-/// on moving colliders) each rank stores its terms. The first rank adds these terms in the order in which a single
-/// process would add them.
+/// Each rank has the whole scene and moves its own particles. All ranks run the same schedules of emitters, in which
+/// the position of a birth determines its rank (births.h). The id of a particle of the setup determines its rank. A
+/// child lives on the rank of its parent. Particles joined by springs live on the first rank, which plans their motion
+/// in substeps for all ranks. Each rank keeps its own sums if they do not depend on the order of their terms. For
+/// others (unsimulated time, loads on moving colliders) the first rank adds the stored terms in the order of a single
+/// process.
 #pragma once
 
 #include <algorithm>
@@ -42,8 +41,7 @@ public:
     [[nodiscard]] bool is_alone() const { return ranks_ == nullptr; }
     /// Returns true for the first rank, which records the counts that are common to all ranks.
     [[nodiscard]] bool is_first() const { return rank_ == 0; }
-    /// Throws InputError if several ranks share the run, because users can change a run between steps only in a single
-    /// process.
+    /// Throws InputError if several ranks share the run, because only a single process can be changed.
     void require_alone(const char* call) const;
     /// Must not be called if is_alone().
     [[nodiscard]] Ranks& ranks() const { return *ranks_; }
@@ -63,19 +61,16 @@ public:
     /// Returns the shortest duration of all ranks, in s. Durations must be above 0. All ranks must call this function.
     [[nodiscard]] double shortest(double duration) const;
 
-    /// Returns the number of living particles on all ranks. here: number on this rank, which is the result if
-    /// is_alone().
+    /// Returns the number of living particles on all ranks. here: number on this rank, the result if is_alone().
     [[nodiscard]] std::uint64_t living(std::size_t here) const { return is_alone() ? here : living_; }
     /// Sets the number of living particles at the start, or after a restore.
     void begin(std::uint64_t living) { living_ = living; }
     /// Adds the births of all ranks to the number of living particles.
     void add_births(std::uint64_t count) { living_ += count; }
-    /// Ends a step. All ranks exchange their numbers of living particles, and add up the terms of sums if there are
-    /// many.
+    /// Ends a step. All ranks exchange their numbers of living particles, and add up terms if there are many.
     void end_step(std::size_t living_here, const ColliderList& colliders);
 
-    /// Returns the same message on all ranks. If several ranks have a message, the message of the rank with the lowest
-    /// `id` is used.
+    /// Returns the same message on all ranks: that of the rank with the lowest `id` among those with a message.
     [[nodiscard]] std::optional<std::string> first_message(const std::optional<std::string>& message,
                                                            std::uint64_t id) const;
 

@@ -43,7 +43,7 @@ void Simulation::Impl::wake_all_sleepers() {
     ParticleStore& store = population.store();
     if (store.may_sleep()) return;
     store.set_may_sleep(true);
-    mover.sleepers().add_weights(now(), 1.0);
+    mover.add_weights(now(), 1.0);
     store.set_may_sleep(false);
     for (std::size_t i = 0; i < store.size(); ++i) store.wake(i);
 }

@@ -11,15 +11,6 @@
 
 namespace ricochet {
 
-/// Reason why a particle leaves.
-enum class RemovalReason : std::uint8_t {
-    none,           ///< the particle stays
-    expired,        ///< its lifetime is over
-    absorbed,       ///< a surface has absorbed it
-    shattered,      ///< fragments replace it
-    out_of_bounds,  ///< it is outside the bounds
-};
-
 /// Removes particles at the end of each step. Particles in free flight are tested only if there are bounds.
 class Retirement final : public Module {
 public:
@@ -28,8 +19,10 @@ public:
         : bounds_(bounds), population_(population), mover_(mover), recorder_(recorder) {}
 
     [[nodiscard]] bool has_bounds() const { return bounds_.has_value(); }
+    /// Statistic that counts the particles that leave for the same reason; null for a particle that stays.
+    using Reason = std::uint64_t SimulationStatistics::*;
     /// Returns the reason for which particle i must be removed. time: end of the step, in s.
-    [[nodiscard]] RemovalReason removal_reason(std::size_t i, double time) const;
+    [[nodiscard]] Reason removal_reason(std::size_t i, double time) const;
 
     void retire(double time) override;
     [[nodiscard]] bool allows_deferred_steps() const override { return !bounds_; }

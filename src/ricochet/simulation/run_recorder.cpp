@@ -11,11 +11,27 @@
 #include "ricochet/verify/rebound.h"
 
 namespace ricochet {
-
 namespace {
 
 /// Number of hits between the prefetch of a surface's totals and their change.
 constexpr std::size_t kPrefetchDistance = 8;
+
+/// Adds `more` to `sum` without rounding.
+void add_words(FixedPointSum& sum, const FixedPointSum& more) {
+    const auto [low, high] = sum.words();
+    const auto [low_more, high_more] = more.words();
+    const std::uint64_t carry = low + low_more < low ? 1 : 0;
+    sum.set_words({low + low_more, high + high_more + carry});
+}
+
+/// Returns the entries of one list of all blocks in the order of particles, whatever the order of moves.
+template <class Entry>
+std::vector<Entry> in_order_of_particles(const std::vector<BlockRecord>& blocks,
+                                         std::vector<Entry> BlockRecord::*list) {
+    std::vector<Entry> all = joined(blocks, list);
+    std::stable_sort(all.begin(), all.end(), [](const Entry& a, const Entry& b) { return a.particle < b.particle; });
+    return all;
+}
 
 }  // namespace
 
@@ -39,18 +55,6 @@ std::uint64_t SurfaceTotals::add(std::span<const SurfaceHit> hits) {
     }
     return lost;
 }
-
-namespace {
-
-/// Adds `more` to `sum` without rounding.
-void add_words(FixedPointSum& sum, const FixedPointSum& more) {
-    const auto [low, high] = sum.words();
-    const auto [low_more, high_more] = more.words();
-    const std::uint64_t carry = low + low_more < low ? 1 : 0;
-    sum.set_words({low + low_more, high + high_more + carry});
-}
-
-}  // namespace
 
 void SurfaceTotals::add(const SurfaceTotals& other) {
     for (std::size_t k = 0; k < entries_.size(); ++k) {
@@ -78,21 +82,6 @@ Vec3 SurfaceTotals::lasting_impulse(std::size_t surface) const {
     const auto& [x, y, z] = entries_[surface].lasting;
     return {x.value(kImpulseUnit), y.value(kImpulseUnit), z.value(kImpulseUnit)};
 }
-
-namespace {
-
-/// Returns the entries of one list of all blocks in the order of particles. The order in which particles were moved has
-/// no effect.
-template <class Entry>
-std::vector<Entry> in_order_of_particles(const std::vector<BlockRecord>& blocks,
-                                         const std::vector<Entry> BlockRecord::*list) {
-    std::vector<Entry> all;
-    for (const BlockRecord& block : blocks) all.insert(all.end(), (block.*list).begin(), (block.*list).end());
-    std::stable_sort(all.begin(), all.end(), [](const Entry& a, const Entry& b) { return a.particle < b.particle; });
-    return all;
-}
-
-}  // namespace
 
 std::optional<Runaway> first_runaway(const std::vector<BlockRecord>& blocks) {
     std::optional<Runaway> first;
@@ -202,8 +191,7 @@ VerifiedDeformation verified_deformation(const std::vector<Triangle>& triangles,
     return surface;
 }
 
-/// Returns the surfaces of all colliders for the verifier, each in the frame of its collider. A plane or a shape is one
-/// surface.
+/// Returns the surfaces of all colliders for the verifier, each in its frame. A plane or a shape is one surface.
 std::vector<VerifiedSurface> surfaces_of(const CollisionWorld& world, const MovingColliders& bodies) {
     std::vector<VerifiedSurface> surfaces(world.colliders().size());
     for (std::size_t i = 0; i < surfaces.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -28,10 +29,8 @@ namespace ricochet {
 
 class ParticleStore;
 
-// Hits and impulses of every surface. The sums are bitwise the same for any number of threads.
-
-/// Sums since the start of the run, one entry per surface. Impulses of impacts and of lasting contact have separate
-/// sums.
+/// Hits and impulses since the start of the run, one entry per surface. Impulses of impacts and of lasting contact have
+/// separate sums. The sums are bitwise the same for any number of threads.
 class SurfaceTotals {
 public:
     /// surfaces: number of surfaces; 0 to record nothing.
@@ -40,8 +39,7 @@ public:
     [[nodiscard]] bool empty() const { return entries_.empty(); }
     [[nodiscard]] std::size_t size() const { return entries_.size(); }
 
-    /// Adds hits. Returns the number of hits whose impulse was too large for the sums. Does nothing if empty(). Several
-    /// threads may call this function at the same time.
+    /// Adds hits on any thread. Returns the number of impulses that were too large. Does nothing if empty().
     std::uint64_t add(std::span<const SurfaceHit> hits);
     [[nodiscard]] std::uint64_t hits(std::size_t surface) const {
         return entries_[surface].hits.load(std::memory_order_relaxed);
@@ -120,23 +118,32 @@ struct BlockRecord {
     std::vector<Violation> violations;
     std::optional<Runaway> runaway;  ///< the first particle that has exceeded kMaxSpeed
 
-    void add(const MoveOutcome& outcome);
+    void add(const MoveOutcome& outcome) {
+        counts.contacts += outcome.bounces;
+        counts.stayed += outcome.stayed;
+        counts.frozen += outcome.is_frozen() ? 1 : 0;
+        counts.coarse_steps += outcome.is_coarse ? 1 : 0;
+        counts.bounces_per_step_max = std::max(counts.bounces_per_step_max, outcome.bounces);
+        counts.squeezed += outcome.squeezed;
+        counts.trials += outcome.trials;
+        counts.penetrations += outcome.depth > 0.0 ? 1 : 0;
+        counts.penetration_sum += outcome.depth;
+        counts.penetration_deepest = std::max(counts.penetration_deepest, outcome.depth);
+    }
     void note(const Runaway& found) {
         if (!runaway || found.particle < runaway->particle) runaway = found;
     }
 };
 
-inline void BlockRecord::add(const MoveOutcome& outcome) {
-    counts.contacts += outcome.bounces;
-    counts.stayed += outcome.stayed;
-    counts.frozen += outcome.is_frozen() ? 1 : 0;
-    counts.coarse_steps += outcome.is_coarse ? 1 : 0;
-    counts.bounces_per_step_max = std::max(counts.bounces_per_step_max, outcome.bounces);
-    counts.squeezed += outcome.squeezed;
-    counts.trials += outcome.trials;
-    counts.penetrations += outcome.depth > 0.0 ? 1 : 0;
-    counts.penetration_sum += outcome.depth;
-    counts.penetration_deepest = std::max(counts.penetration_deepest, outcome.depth);
+/// Returns the entries of one list of each record, record by record.
+template <class Records, class Record, class Entry>
+[[nodiscard]] std::vector<Entry> joined(const Records& records, std::vector<Entry> Record::*list) {
+    std::vector<Entry> all;
+    for (const auto& record : records) {
+        const std::vector<Entry>& more = std::invoke(list, record);
+        all.insert(all.end(), more.begin(), more.end());
+    }
+    return all;
 }
 
 /// Adds the load of a particle on a collider to the totals of all colliders.
@@ -145,8 +152,8 @@ void add_load(std::vector<ColliderTotals>& totals, const ColliderLoad& load, con
 /// Returns the first particle of all blocks that has exceeded kMaxSpeed.
 [[nodiscard]] std::optional<Runaway> first_runaway(const std::vector<BlockRecord>& blocks);
 
-/// Results of a run, except the particles. Blocks are added in their order, and terms of particles in the order of
-/// particles. Therefore the results are the same for any number of threads.
+/// Results of a run, except the particles. They are the same for any number of threads, because blocks are added in
+/// their order, and terms of particles in the order of particles.
 class RunRecorder {
 public:
     /// surfaces: number of surfaces with totals. colliders: number of colliders with loads; 0 if no collider and no
@@ -214,8 +221,6 @@ private:
     bool collects_contacts_;
 };
 
-// Private to the simulation: verification of a run.
-
 /// The verifier, with its state of every living particle, in the order of Particles.
 class RunCheck {
 public:
@@ -229,8 +234,8 @@ public:
     RunCheck(const CollisionWorld& world, const MovingColliders& bodies);
 
     /// Adds entries for appended particles. particles: new number of all particles. Must not be called during checks. A
-    /// new particle is watched only from its first check on. Until then, other impacts in the same step can still
-    /// change the path of a dynamic body at the time of the birth.
+    /// new particle is watched from its first check on. Before, other impacts in the step can still change the path of
+    /// a dynamic body at the time of the birth.
     void add_spawned(std::size_t particles);
     /// Checks the motion of particle i up to the given times. `particles` still contains the state of particle i before
     /// the motion. Several threads may check different particles.
@@ -241,8 +246,7 @@ public:
                                std::vector<Violation>& violations);
     /// Returns the violations of particles that are stalled at the end of the run. time: end of the run, in s.
     [[nodiscard]] std::vector<Violation> check_end(const Particles& particles, double time) const;
-    /// Begins to watch all particles at their positions, from a time on, in s. Stalled particles are watched from their
-    /// stored times on.
+    /// Begins to watch all particles at their positions, from a time on, in s, or from their stored times if stalled.
     void restart(const ParticleStore& store, double now);
     /// Keeps the entries that Particles::compact() keeps.
     void compact(const std::vector<std::uint8_t>& keep);
@@ -250,8 +254,7 @@ public:
     /// Returns the violations in impacts of spheres on each other.
     [[nodiscard]] static std::vector<Violation> check_meetings(const std::vector<PairMeeting>& meetings,
                                                                const verify::ImpactAudit& books);
-    /// Returns violations for spheres whose overlap at the end of a step is new or larger than before. Overlaps up to
-    /// `most` times the smaller radius are allowed.
+    /// Returns violations for spheres whose overlap has grown in a step beyond `most` times the smaller radius.
     [[nodiscard]] std::vector<Violation> check_spheres(const Particles& particles, const TimeSpan& step, double most);
     /// Returns the largest overlap that the last call of check_spheres() found, divided by the smaller radius.
     [[nodiscard]] double largest_overlap() const { return overlaps_.largest(); }
@@ -260,8 +263,7 @@ private:
     Verifier verifier_;
     SphereOverlaps overlaps_;
     bool has_looked_ = false;                               // true if check_spheres() has been called
-    std::vector<std::optional<VerifiedParticle>> watched_;  // per particle; empty before the first check of the
-                                                            // particle
+    std::vector<std::optional<VerifiedParticle>> watched_;  // per particle; empty before its first check
 };
 
 }  // namespace ricochet

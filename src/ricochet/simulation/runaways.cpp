@@ -12,15 +12,13 @@
 namespace ricochet {
 namespace {
 
-/// Throws DivergedError if a particle was accelerated beyond kMaxSpeed. A particle may be faster than light at its
-/// birth, and can then hit other particles.
+/// Throws DivergedError if a particle was accelerated beyond kMaxSpeed. It may be that fast at its birth.
 class Runaways final : public Module {
 public:
     explicit Runaways(const ModuleParts& parts) : parts_(parts) {}
 
     void before_generation(const ParticleRange& /*generation*/, const TimeSpan& step) override { step_end_ = step.end; }
-    /// If several ranks share the run, all ranks throw in the same step, with the message that a single process would
-    /// give.
+    /// All ranks throw in the same step, with the message that a single process would give.
     void correct(const ParticleRange& /*generation*/, const TimeSpan& /*substep*/,
                  std::vector<BlockRecord>& blocks) override {
         const std::optional<Runaway> runaway = first_runaway(blocks);

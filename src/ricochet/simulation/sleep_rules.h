@@ -15,14 +15,12 @@ namespace ricochet {
 /// Returns true if a member moves only by a small part of its radius in its planned step. Forces on the member do not
 /// matter. beside_movers: true if moving colliders are near the island and may carry its members.
 [[nodiscard]] bool is_slow(const ContactIslandMember& member, const SolverBody& planned, bool beside_movers);
-/// Returns true if a slow member is also slow in relation to the forces on it. pull: acceleration by these forces, in
-/// m/s^2.
+/// Returns true if a slow member is also slow compared with the acceleration by forces on it, `pull`, in m/s^2.
 [[nodiscard]] bool is_at_rest(const ContactIslandMember& member, const SolverBody& planned, double pull);
 /// Returns the number of steps that a member must be at rest before it sleeps.
 [[nodiscard]] std::uint32_t steps_to_sleep(const ContactIslandMember& member, double pull);
 
-/// Returns true if a member moves through the whole step, no other particle acts on it from a distance, and no moving
-/// collider is near.
+/// Returns true if a member moves through the whole step, without forces of other particles or a moving collider near.
 [[nodiscard]] bool may_sleep(const ResponseRules& rules, const ContactIslandMember& member, const TimeSpan& step);
 /// Returns true if a moving collider may touch a sphere at this position in the step.
 [[nodiscard]] bool is_beside_movers(const ResponseRules& rules, const Vec3& center, double radius);

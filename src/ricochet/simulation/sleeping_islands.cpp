@@ -130,8 +130,7 @@ void SleepingIslands::analyse_contacts() {
     find_neighbours();
 }
 
-/// Finds the sleepers at both ends of each contact. One pass suffices, because contacts and sleepers are both sorted by
-/// particle.
+/// Finds the sleepers at both ends of each contact, in one pass, because both lists are sorted by particle.
 void SleepingIslands::find_ends() {
     ends_.clear();
     std::uint32_t slot = 0;

@@ -37,8 +37,7 @@ public:
     /// Returns the number of a sleeper's island. This number is the lowest particle id at the time when the island was
     /// joined. The island remains one island even if spheres in its middle wake.
     [[nodiscard]] std::uint64_t number_of(std::uint64_t sleeper) const { return find(sleeper)->sleeping_island; }
-    /// Returns the largest impulse, in N s per step, with which a contact pressed on a sleeper when the sleeper fell
-    /// asleep.
+    /// Returns the largest impulse, in N s per step, of a contact on a sleeper when it fell asleep.
     [[nodiscard]] double load_of(std::uint64_t sleeper) const { return find(sleeper)->load; }
     /// Returns the forces of sleepers on surfaces, ascending by particle.
     [[nodiscard]] const std::vector<Weight>& weights() const { return weights_; }
@@ -48,27 +47,23 @@ public:
     [[nodiscard]] const std::vector<WarmStartMemory::Entry>& edge_contacts() const { return edge_contacts_; }
 
     [[nodiscard]] std::uint32_t sleep_counter(std::uint64_t particle) const;
-    /// Sets the counters at the end of a step. The list can have any order. Spheres that are not in the list have
-    /// moved.
+    /// Sets the counters at the end of a step, in any order. Spheres that are not in the list have moved.
     void set_sleep_counters(std::vector<SleepCounter> still);
 
-    /// Puts particles to sleep. contacts: contacts of all these particles. An earlier contact with a sleeper is kept
-    /// without an impulse if it has ended. It later shows whether the spheres have separated. Islands that contacts
-    /// connect become one island.
+    /// Puts particles to sleep. contacts: all of theirs. An earlier contact with a sleeper is kept without an impulse
+    /// if it has ended, to show later whether the spheres have separated. Contacts join islands.
     void add(const std::vector<std::uint64_t>& particles, const std::vector<WarmStartMemory::Entry>& contacts,
              const std::vector<Weight>& weights);
     /// Joins the islands of each touching pair of spheres if both spheres sleep.
     void join(const std::vector<ContactKey>& touching);
     /// Returns all members of the islands of the given sleepers, ascending.
     [[nodiscard]] std::vector<std::uint64_t> islands_of_sleepers(const std::vector<std::uint64_t>& sleepers) const;
-    /// Returns the sleepers among the given particles, and all sleepers within a distance of `contacts` contacts from
-    /// them. Ascending.
+    /// Returns the sleepers among the given particles, and those within `contacts` contacts of them. Ascending.
     [[nodiscard]] std::vector<std::uint64_t> around(const std::vector<std::uint64_t>& particles, int contacts) const;
     /// Returns the sleepers without a load path to a sleeper in `held`, except the sleepers in `held` themselves. A
     /// load path is a row of contacts under load. Ascending.
     [[nodiscard]] std::vector<std::uint64_t> not_joined_to(const std::vector<std::uint64_t>& held) const;
-    /// Wakes sleepers. woken: ids, ascending. Returns the contacts of the woken spheres, in the state in which the
-    /// spheres fell asleep.
+    /// Wakes sleepers, ascending ids. Returns their contacts, in the state in which they fell asleep.
     [[nodiscard]] std::vector<WarmStartMemory::Entry> wake(const std::vector<std::uint64_t>& woken);
     /// Appends the impulses that a sleeper exerts on surfaces in a duration, in s.
     void add_weight(std::uint64_t particle, double duration, std::vector<SurfaceHit>& hits) const;
@@ -85,9 +80,9 @@ public:
         ++version_;
     }
 
-    /// Returns false if no run can produce the present state. In a valid state, lists are ascending, and the number of
-    /// an island is at most the ids of its particles. All weights and contacts belong to sleepers. next_id: id of the
-    /// next particle. surfaces: number of surfaces.
+    /// Returns false if no run can produce the present state: ascending lists, island numbers at most the ids of
+    /// particles, weights and contacts of sleepers only. next_id: id of the next particle. surfaces: number of
+    /// surfaces.
     [[nodiscard]] bool is_sound(std::uint64_t next_id, std::size_t surfaces) const;
 
 private:

@@ -1,5 +1,4 @@
-#include "ricochet/simulation/sleeping_particles.h"
-
+// Particles at rest that are not moved. Their weights still count in the totals of surfaces.
 #include <vector>
 
 #include "ricochet/simulation/active_mover.h"
@@ -7,46 +6,41 @@
 
 namespace ricochet {
 
-std::uint64_t SleepingParticles::add_weight(std::size_t i, double until, double sign) {
-    SurfaceTotals& totals = recorder_.totals();
-    const double elapsed = until - store_.particles().accounted_until[i];
+std::uint64_t ActiveMover::add_weight(std::size_t i, double until, double sign) {
+    SurfaceTotals& totals = parts_.recorder.totals();
+    const double elapsed = until - parts_.store.particles().accounted_until[i];
     if (totals.empty() || !(elapsed > 0.0)) return 0;
     std::vector<SurfaceHit> hits;
-    const std::uint64_t id = store_.particles().id[i];
-    const SleepingIslands* const sleeping_islands = observers_.sleeping_islands;
+    const std::uint64_t id = parts_.store.particles().id[i];
+    const SleepingIslands* const sleeping_islands = parts_.observers.sleeping_islands;
     if (sleeping_islands != nullptr && sleeping_islands->is_asleep(id)) {
         sleeping_islands->add_weight(id, elapsed, hits);
-    } else if (store_.is_asleep(i)) {
-        MovingParticle sleeper = store_.load(i, until, true);
-        sleeper.state.coupling = observers_.coupled->coupling_of(i);
+    } else if (parts_.store.is_asleep(i)) {
+        MovingParticle sleeper = parts_.store.load(i, until, true);
+        sleeper.state.coupling = coupled().coupling_of(i);
         response_.add_weight(sleeper, elapsed, hits);
     }
     for (SurfaceHit& hit : hits) hit.impulse *= sign;
     return totals.add(hits);
 }
 
-void SleepingParticles::add_weights(double until, double sign) {
-    for (std::size_t i = 0; i < store_.size(); ++i) (void)add_weight(i, until, sign);
+void ActiveMover::add_weights(double until, double sign) {
+    for (std::size_t i = 0; i < parts_.store.size(); ++i) (void)add_weight(i, until, sign);
 }
 
-void SleepingParticles::add_to_totals(std::span<const SurfaceHit> hits) {
-    SurfaceTotals& totals = recorder_.totals();
-    if (!totals.empty()) recorder_.statistics().lost_impulses += totals.add(hits);
+void ActiveMover::wake(std::size_t i, double time) {
+    parts_.recorder.statistics().lost_impulses += add_weight(i, time, 1.0);
+    parts_.store.wake(i);
+    parts_.schedule.forget(i);
 }
 
-void SleepingParticles::wake(std::size_t i, double time) {
-    recorder_.statistics().lost_impulses += add_weight(i, time, 1.0);
-    store_.wake(i);
-    schedule_.forget(i);
-}
-
-void SleepingParticles::check(std::size_t i, const TimeSpan& step, BlockRecord& record) const {
-    if (observers_.check == nullptr) return;
-    const Particles& particles = store_.particles();
+void ActiveMover::check_sleeper(std::size_t i, const TimeSpan& step, BlockRecord& record) const {
+    if (parts_.observers.check == nullptr) return;
+    const Particles& particles = parts_.store.particles();
     const Vec3& position = particles.position[i];
     const Segment staying{position, position, step.end, step.begin, step.end};
-    observers_.check->check(i, particles, store_.force_input(i, step.end), {step.end, step.end}, {&staying, 1},
-                            record.violations);
+    parts_.observers.check->check(i, particles, parts_.store.force_input(i, step.end), {step.end, step.end},
+                                  {&staying, 1}, record.violations);
 }
 
 }  // namespace ricochet

@@ -24,8 +24,7 @@ struct FlyingBall {
     [[nodiscard]] Vec3 at(double t) const;
 };
 
-/// The spheres of a step, in grids whose cells have about the size of their spheres. The sizes of spheres may differ by
-/// any factor.
+/// The spheres of a step, of any sizes, in grids whose cells have about the size of their spheres.
 class SpawnOccupancy {
 public:
     /// end: end of the step, in s.

@@ -12,7 +12,7 @@ namespace ricochet {
 SpringsModule::SpringsModule(SimulationSetup& setup, const ModuleParts& parts)
     : parts_(parts),
       motion_(std::move(setup.springs), setup.particles_forces, std::move(setup.solver), parts.response.rules().forces,
-              parts.options.integrator, {parts.options.time_step, parts.warnings.knows_implicit()}),
+              parts.options.integrator, parts.options.time_step, parts.warnings.knows_implicit()),
       faces_(std::move(setup.spring_faces)) {
     parts.observers.coupled = &motion_;
     motion_.call_between([&response = parts.response] { response.rules().poll(); });

@@ -20,9 +20,8 @@
 namespace ricochet {
 namespace {
 
-/// Stiffness of the twelve neighbours of a sphere in the closest packing of equal spheres, divided by the stiffness of
-/// one neighbour. This ratio is the sum of the squared cosines of the angles between the directions to the neighbours
-/// and any line. A mathematical constant.
+/// Stiffness of a sphere's twelve neighbours in the closest packing, divided by that of one: the sum of the squared
+/// cosines of the angles between the directions to them and any line. A mathematical constant.
 constexpr double kClosestPacking = 4.0;
 
 /// Number of decimal digits that distinguishes any two different doubles.
@@ -36,8 +35,7 @@ bool may_kick_first(const SimulationSetup& setup) {
                         [](const ColliderDescription& c) { return !c.frame.empty() || is_deforming(c); });
 }
 
-/// The two smallest masses of the particles between which a force acts, in kg. The mass of a pinned or missing particle
-/// is infinite.
+/// The two smallest masses of the particles between which a force acts, in kg; infinite if pinned or missing.
 struct LightestPair {
     std::array<double, 2> masses{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     double count = 0.0;  ///< number of these particles
@@ -51,8 +49,7 @@ struct LightestPair {
     [[nodiscard]] double reduced_inverse() const { return 1.0 / masses[0] + 1.0 / masses[1]; }
 };
 
-/// Returns the two smallest masses of the particles of a force. Fragments are skipped, because their masses are known
-/// only during the run.
+/// Returns the two smallest masses of a force's particles, without fragments, whose masses are not known yet.
 LightestPair lightest_of(const SimulationSetup& setup, const ParticlesForceEntry& entry) {
     const bool is_all = entry.particles.empty() && entry.emitters.empty();
     LightestPair lightest;
@@ -103,14 +100,12 @@ std::string undamped(const SimulationSetup& setup, const std::string& forces, co
         name_of(setup.options.integrator.kind), forces, whose, others);
 }
 
-/// Largest relative growth of an energy in a run that causes no warning. Local, because it decides only about a
-/// warning.
+/// Largest relative growth of an energy in a run without a warning. Local: it decides only about a warning.
 constexpr double kLargestGain = 0.01;
 
 /// Returns a warning if the steps are short enough for stability, but the integrator still adds energy to the fastest
-/// oscillation. The integrator midpoint does this unless dampers remove more energy. For a slower oscillation, the
-/// added energy decreases with the fourth power of its rate, and the damping only with the square. So the fastest
-/// oscillation decides.
+/// oscillation, as midpoint does unless dampers remove more. For slower ones, the added energy decreases with the
+/// fourth power of the rate, and the damping only with the square.
 std::optional<std::string> growth_warning(const SimulationSetup& setup, const OscillationRates& rates,
                                           const std::string& forces) {
     const double h = setup.options.time_step;
@@ -134,11 +129,9 @@ std::optional<std::string> spring_warning(const SimulationSetup& setup) {
                     may_be_implicit(setup) ? "the integrator implicit_euler" : "softer springs and dampers");
 }
 
-/// Returns a warning if particles start in overlap, or nearer to each other than at rest. Such particles need a shorter
-/// step until they have separated.
+/// Returns a warning if particles start nearer to each other than at rest, and need a shorter step at first.
 std::optional<std::string> start_warning(const SimulationSetup& setup, std::size_t number, double bound_later) {
-    // The packing of a setup can differ from the closest packing by rounding. Local, because it decides only about a
-    // warning.
+    // The packing of a setup can differ from the closest one by rounding. Local: it decides only about a warning.
     constexpr double kRounding = 1.0 - 1e-6;
     const OscillationRates rates = rates_at_start(setup, setup.particles_forces[number]);
     const double bound = longest_stable_step(setup.options.integrator.kind, rates);
@@ -226,8 +219,7 @@ double damping_of_all(const std::vector<const Force*>& drags, const ForceInput& 
     return rate;
 }
 
-/// The particle that drag damps fastest, with the velocity at which the damping is fastest. This is either the initial
-/// velocity or the velocity of its fall.
+/// The particle that drag damps fastest, at its initial velocity or the velocity of its fall.
 class FastestDamped {
 public:
     FastestDamped(const SimulationSetup& setup, std::vector<const Force*> drags)

@@ -10,8 +10,8 @@
 namespace ricochet {
 namespace {
 
-/// Returns the largest eigenvalue of a matrix without negative eigenvalues. Method: O. K. Smith, "Eigenvalues of a
-/// symmetric 3 x 3 matrix", CACM 4(4), 1961.
+/// Returns the largest eigenvalue of a positive semi-definite matrix (O. K. Smith, "Eigenvalues of a symmetric 3 x 3
+/// matrix", CACM 4(4), 1961).
 double largest_eigenvalue(const SymmetricMatrix& a) {
     const double mean = a.trace() / 3.0;
     const SymmetricMatrix rest = a + diagonal_matrix(-mean);

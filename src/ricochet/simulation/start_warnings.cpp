@@ -34,8 +34,7 @@ double least_restitution(const SimulationSetup& setup) {
     return least;
 }
 
-/// Returns a warning if the penalty sub-step exceeds the stability bound of the lightest particle on the surface with
-/// the most damping.
+/// Returns a warning if the penalty sub-step exceeds the lightest particle's bound on the most damping surface.
 std::vector<std::string> penalty_warnings(const SimulationSetup& setup) {
     const SimulationOptions& options = setup.options;
     const double mass = lightest_particle(setup);

@@ -71,8 +71,7 @@ void Simulation::Impl::move_substep(const ParticleRange& generation, const TimeS
 
 void Simulation::Impl::record(const ParticleRange& generation, const std::vector<BlockRecord>& blocks) {
     recorder.record(blocks);
-    std::vector<ColliderLoad> loads;
-    for (const BlockRecord& block : blocks) loads.insert(loads.end(), block.loads.begin(), block.loads.end());
+    std::vector<ColliderLoad> loads = joined(blocks, &BlockRecord::loads);
     modules.each([&](Module& module) { module.record(generation, blocks, loads); });
     recorder.add_loads(loads, scene.list());
 }

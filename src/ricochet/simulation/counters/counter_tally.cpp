@@ -15,10 +15,7 @@ CounterTally::CounterTally(std::span<const CounterDescription> counters, bool ha
 // Adds the passages in the order of particle ids, so that the sums do not depend on the order of the blocks.
 void CounterTally::record(const ParticleRange& /*generation*/, const std::vector<BlockRecord>& blocks,
                           std::vector<ColliderLoad>& /*loads*/) {
-    std::vector<Passage> passages;
-    for (const BlockRecord& block : blocks) {
-        passages.insert(passages.end(), block.passages.begin(), block.passages.end());
-    }
+    std::vector<Passage> passages = joined(blocks, &BlockRecord::passages);
     std::stable_sort(passages.begin(), passages.end(),
                      [](const Passage& a, const Passage& b) { return a.particle < b.particle; });
     for (const Passage& passage : passages) {

@@ -10,8 +10,7 @@
 namespace ricochet {
 namespace {
 
-/// Number of bisections in the search for the time of a passage. Local: more bisections would exceed the precision of a
-/// double.
+/// Number of bisections for the time of a passage. Local: more would exceed the precision of a double.
 constexpr int kPassageHalvings = 64;
 
 /// Times, in s, at which a piece of a path reaches an extreme height above a plane, in ascending order.
@@ -32,8 +31,7 @@ Extremes extremes_of(const Path& path, const Vec3& normal, double duration) {
     Extremes extremes;
     const double discriminant = b * b - 4.0 * a * c;
     if (!(discriminant > 0.0)) return extremes;
-    // The formula for the root of larger magnitude has no cancellation. The other root follows from the product of both
-    // roots.
+    // The root of larger magnitude has no cancellation. The other root follows from the product of both.
     const double q = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
     double first = a != 0.0 ? q / a : -1.0;
     double second = q != 0.0 ? c / q : -1.0;

@@ -2,9 +2,8 @@
 /// Private to the simulation: passages of particles through the disks of counters.
 ///
 /// The sides of a disk's plane on which stored positions lie determine the passages. A path between two stored
-/// positions passes the plane each time that it changes sides, alternately forward and backward. The step that ends at
-/// a stored position and the step that begins there compute the same side. Therefore no passage is lost or counted
-/// twice.
+/// positions passes the plane each time that it changes sides. Steps that end and begin at a stored position compute
+/// the same side, so no passage is lost or counted twice.
 #pragma once
 
 #include <cstdint>
@@ -65,8 +64,7 @@ public:
     void trace(const MovedParticle& moved, std::span<const FlownPiece> pieces, std::vector<Passage>& passages) const;
     /// Appends the passages of a particle along segments.
     void trace(const MovedParticle& moved, std::span<const Segment> segments, std::vector<Passage>& passages) const;
-    /// Returns false if no path between two positions can pass the plane of a disk. A path must lie within `margin`, in
-    /// m, of its chord.
+    /// Returns false if no path between two positions, within `margin`, in m, of its chord, can pass a disk's plane.
     [[nodiscard]] bool may_pass(const Vec3& from, const Vec3& to, double margin) const;
 
 private:

@@ -1,7 +1,6 @@
 #include "ricochet/simulation.h"
 
 #include <atomic>
-#include <cmath>
 #include <utility>
 
 #include "ricochet/core/error.h"

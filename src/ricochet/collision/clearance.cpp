@@ -1,7 +1,6 @@
 #include "ricochet/collision/clearance.h"
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <vector>
 
@@ -10,8 +9,7 @@
 namespace ricochet {
 namespace {
 
-/// Largest number of surfaces considered, the nearest first. The cost of the search grows with its third power. Local,
-/// because every displacement is certified before use.
+/// Largest number of surfaces considered, the nearest first, at a cubic cost. Local: each displacement is certified.
 constexpr std::size_t kMostSurfaces = 24;
 
 /// Largest number of rounds, each of which includes surfaces that the last displacement brought near. Local, as above.

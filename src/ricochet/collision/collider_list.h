@@ -14,8 +14,7 @@ namespace ricochet {
 /// All colliders of a scene, in all frames, and the numbers of their surfaces.
 class ColliderList {
 public:
-    /// Throws InputError with the collider's name for a mesh without triangles, or with materials for only some of
-    /// them.
+    /// Throws InputError with the collider's name for a mesh without triangles, or with too few or many materials.
     explicit ColliderList(std::vector<ColliderDescription> colliders);
 
     [[nodiscard]] const std::vector<ColliderDescription>& all() const { return colliders_; }

@@ -154,8 +154,7 @@ double CollisionWorld::signed_distance_from(SurfaceId surface, const Vec3& p) co
 }
 
 double CollisionWorld::size_of(SurfaceId surface) const {
-    // The diagonal of a ball's box is 3.5 radii. A long cylinder is curved like a short one. Local: a scale, no
-    // tolerance.
+    // The diagonal of a ball's box is 3.5 radii. A long cylinder is curved like a short one. Local: a scale.
     constexpr double kMostRadii = 4.0;
     const Range& range = range_of(surface);
     if (range.kind != Kind::shape) return bounds().diagonal();

@@ -66,8 +66,7 @@ public:
     [[nodiscard]] int rim_of(SurfaceId surface, const Vec3& p) const;
     /// Returns the exact side of a surface: +1 if p is in front, where its normal points, -1 behind it, 0 in its plane.
     [[nodiscard]] int side_of_surface(SurfaceId surface, const Vec3& p) const;
-    /// Returns the time, in s, for which a path along a surface stays over it, see triangle_exit_time(). It is the
-    /// whole duration for a plane and for a shape's side.
+    /// Returns the time, in s, for which a path along a surface stays over it, or the whole duration if it has no rim.
     [[nodiscard]] double time_over(SurfaceId surface, const Path& path, double slack) const;
     /// Returns true if the closed segment [p, q] intersects the surface. The decision is exact for planes and
     /// triangles. For shapes it errs on the side of true, by about 2^-90.
@@ -81,8 +80,7 @@ public:
     [[nodiscard]] const TriangleBvh& bvh_for(double radius) const;
     /// Builds the class of a radius if it does not exist yet. Must not run while other threads query.
     void prepare_radius(double radius);
-    /// Enables or disables culling. Without culling every triangle is a candidate of every path. The results are the
-    /// same but slower; tests use them as the reference.
+    /// Enables or disables culling. Without it, every triangle is a candidate of every path, as a reference for tests.
     void set_culling(bool culls) { culls_ = culls; }
     [[nodiscard]] bool culls() const { return culls_; }
     /// Returns the field of lower bounds of the distance to the triangles.

@@ -21,8 +21,7 @@ struct ContactSurface {
     SurfaceId surface = 0;
     Vec3 normal;       ///< unit, facing the side that the path comes from; for spheres from the surface to the centre
     bool flat = true;  ///< true: a plane, cap or face of a triangle; false: an edge, a vertex or a curved surface
-    /// True if the particle already slides, rolls or rests on the surface before the impact. The normal speed is then a
-    /// rounding error, so the impact never treats the surface as approached.
+    /// True if the particle already slides, rolls or rests on it. The normal speed is then only a rounding error.
     bool is_support = false;
 };
 
@@ -57,8 +56,7 @@ void drop_seams(std::vector<Surface>& list) {
     list.erase(std::remove_if(faces_end, list.end(), is_seam), list.end());
 }
 
-/// All triangles that come near a particle's path in one later step, if they are known and few. They affect only the
-/// cost: the query of that step needs no broad phase.
+/// All triangles that come near a path in one later step, if they are known and few. They save a broad phase.
 class ContactCandidates {
 public:
     static constexpr std::size_t kMost = 4;

@@ -8,7 +8,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "ricochet/collision/collision_world.h"
@@ -47,8 +46,7 @@ struct DeformedTriangle {
 /// One deforming mesh. Queries are safe from any number of threads, but not during begin_step().
 class DeformingMesh {
 public:
-    /// Applies the placement to the motion. Throws InputError with the name of the collider if motion and mesh differ
-    /// in their vertices, or if a coordinate exceeds 1e75 m.
+    /// Applies the placement to the motion. Throws InputError if motion and mesh differ, or beyond 1e75 m.
     DeformingMesh(const ColliderDescription& description, std::size_t collider, SurfaceId first_surface);
 
     [[nodiscard]] std::size_t collider() const { return collider_; }

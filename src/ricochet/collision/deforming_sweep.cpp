@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/geometry/sweep/closest_point.h"
@@ -23,9 +22,9 @@ double distance_at_start(const Path& path, const MovingTriangle& triangle) {
 
 }  // namespace
 
-DeformingSweep::DeformingSweep(const DeformingColliders& deforming, const Path& path, const PathTimes& times,
+DeformingSweep::DeformingSweep(const DeformingColliders& deforming, const Path& path, const PathClock& clock,
                                double radius, std::span<const SurfaceId> supports, double beside)
-    : deforming_(deforming), path_(path), times_(times), radius_(radius), tolerance_(0.0), supports_(supports) {
+    : deforming_(deforming), path_(path), clock_(clock), radius_(radius), tolerance_(0.0), supports_(supports) {
     for (const Vec3& point : path.control_points()) box_.include(point);
     box_.include(path.end);
     const double largest = std::max(max_abs(box_.lower), max_abs(box_.upper));
@@ -36,8 +35,6 @@ DeformingSweep::DeformingSweep(const DeformingColliders& deforming, const Path& 
 bool DeformingSweep::is_supported(SurfaceId surface) const {
     return std::find(supports_.begin(), supports_.end(), surface) != supports_.end();
 }
-
-bool DeformingSweep::comes_near(const MovingTriangle& triangle) const { return overlap(box_of(triangle), box_); }
 
 /// Returns the radius with which segments are certified. Supports and overlapped surfaces block only intersections.
 double DeformingSweep::certified_radius(SurfaceId surface, const MovingTriangle& triangle) const {
@@ -56,7 +53,7 @@ std::optional<DeformingSweep::Hit> DeformingSweep::hit_at(SurfaceId surface, con
     const ClosestPointOnTriangle closest = closest_point_on_triangle(p, a, b, c);
     const Vec3 weights = barycentric_coordinates(closest, a, b, c);
     // Takes the corner velocities from the keys, because differences over a short piece are mostly rounding errors.
-    const double middle = 0.5 * times_.begin + 0.5 * times_.end;
+    const double middle = 0.5 * clock_.begin + 0.5 * clock_.end;
     const auto [u, v, w] = deforming_.mesh_with(surface).corner_velocities(surface, middle);
     const Vec3 relative = path_.velocity(time) - (weights.x * u + weights.y * v + weights.z * w);
     // A triangle without area has no normal for a point, nor for a sphere whose centre is on it.

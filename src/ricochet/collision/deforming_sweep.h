@@ -9,22 +9,17 @@
 #include "ricochet/collision/contact.h"
 #include "ricochet/collision/deforming_colliders.h"
 #include "ricochet/collision/surfaces_in_other_frames.h"
+#include "ricochet/core/box_tools.h"
 #include "ricochet/geometry/sweep/moving_separation.h"
 #include "ricochet/geometry/sweep/path.h"
 
 namespace ricochet {
 
-/// Simulation times of a path's ends, in s.
-struct PathTimes {
-    double begin = 0.0;
-    double end = 0.0;
-};
-
 /// Sweep of one path. All arguments must outlive the object.
 class DeformingSweep {
 public:
     /// `supports` and `beside`: see the members of ContactQuery with these names.
-    DeformingSweep(const DeformingColliders& deforming, const Path& path, const PathTimes& times, double radius,
+    DeformingSweep(const DeformingColliders& deforming, const Path& path, const PathClock& clock, double radius,
                    std::span<const SurfaceId> supports, double beside);
 
     /// Returns the first contact with any triangle, in s along the path. Calls near(triangle) for each one near it.
@@ -32,8 +27,8 @@ public:
     [[nodiscard]] std::optional<Contact> first_contact(std::span<const SurfaceId> triangles, const Near& near) const {
         std::vector<Hit> hits;
         for (const SurfaceId surface : triangles) {
-            const MovingTriangle triangle = deforming_.mesh_with(surface).between(surface, times_.begin, times_.end);
-            if (!comes_near(triangle)) continue;
+            const MovingTriangle triangle = deforming_.mesh_with(surface).between(surface, clock_.begin, clock_.end);
+            if (!overlap(box_of(triangle), box_)) continue;
             near(SurfacesInOtherFrames::Deforming{surface, certified_radius(surface, triangle)});
             if (is_supported(surface)) continue;
             if (const auto hit = meet(surface, triangle)) hits.push_back(*hit);
@@ -48,7 +43,6 @@ private:
     };
 
     [[nodiscard]] bool is_supported(SurfaceId surface) const;
-    [[nodiscard]] bool comes_near(const MovingTriangle& triangle) const;
     [[nodiscard]] double certified_radius(SurfaceId surface, const MovingTriangle& triangle) const;
     [[nodiscard]] std::optional<Hit> meet(SurfaceId surface, const MovingTriangle& triangle) const;
     [[nodiscard]] std::optional<Hit> hit_at(SurfaceId surface, const MovingTriangle& triangle,
@@ -57,7 +51,7 @@ private:
 
     const DeformingColliders& deforming_;
     const Path& path_;
-    PathTimes times_;
+    PathClock clock_;
     double radius_;
     double tolerance_;  ///< sphere_tolerance() of the path, in m
     std::span<const SurfaceId> supports_;

@@ -90,8 +90,7 @@ Box3 swept_box(const FrameTree& frames, std::size_t frame, const Box3& box, doub
     return all;
 }
 
-MovingColliders::MovingColliders(const CollisionWorld& at_rest, std::shared_ptr<const FrameTree> frames,
-                                 double chord_margin)
+MovingColliders::MovingColliders(const CollisionWorld& at_rest, std::shared_ptr<const FrameTree> frames)
     : at_rest_(at_rest), frames_(std::move(frames)), deforming_(at_rest.list()), step_(next_step_of_any()) {
     for (const ColliderDescription& collider : at_rest.colliders()) {
         if (collider.frame.empty()) {
@@ -106,8 +105,7 @@ MovingColliders::MovingColliders(const CollisionWorld& at_rest, std::shared_ptr<
             std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& body) { return body.frame == *frame; });
         body_of_collider_.push_back(static_cast<BodyId>(known - bodies_.begin()));
         if (known != bodies_.end()) continue;
-        bodies_.push_back(
-            {std::make_unique<CollisionWorld>(at_rest.list(), collider.frame, chord_margin), *frame, {}, {}, {}, {}});
+        bodies_.push_back({std::make_unique<CollisionWorld>(at_rest.list(), collider.frame), *frame, {}, {}, {}, {}});
         bodies_.back().is_driven = frames_->description(*frame).is_driven;
     }
     for (std::size_t mesh = 0; mesh < deforming_.all().size(); ++mesh) {
@@ -142,16 +140,14 @@ void MovingColliders::begin_step(double begin, double end) {
     begin_ = begin;
     end_ = end;
     step_ = next_step_of_any();
-    parallel_for_blocks(bodies_.size(), kBodiesInBlock, [&](std::size_t, std::size_t first, std::size_t last) {
-        for (std::size_t k = first; k < last; ++k) {
-            Body& body = bodies_[k];
-            body.at_begin = frames_->at(body.frame, begin);
-            body.at_end = frames_->at(body.frame, end);
-            body.bounds = frames_->bounds(body.frame, begin, end);
-            body.swept = body.world->planes().empty()
-                             ? swept_box(*frames_, body.frame, body.world->bounds(), begin, end)
-                             : everywhere();
-        }
+    parallel_for(bodies_.size(), kBodiesInBlock, [&](std::size_t k) {
+        Body& body = bodies_[k];
+        body.at_begin = frames_->at(body.frame, begin);
+        body.at_end = frames_->at(body.frame, end);
+        body.bounds = frames_->bounds(body.frame, begin, end);
+        body.swept = body.world->planes().empty()
+                         ? swept_box(*frames_, body.frame, body.world->bounds(), begin, end)
+                         : everywhere();
     });
     bounded_.clear();
     unbounded_.clear();

@@ -35,8 +35,7 @@ class MovingColliders {
 public:
     /// `at_rest` is the world body. `frames` must contain all frames to which the colliders refer. Both must outlive
     /// the object. Throws InputError like CollisionWorld, and for a frame that does not exist.
-    explicit MovingColliders(const CollisionWorld& at_rest, std::shared_ptr<const FrameTree> frames = nullptr,
-                             double chord_margin = kChordMargin);
+    explicit MovingColliders(const CollisionWorld& at_rest, std::shared_ptr<const FrameTree> frames = nullptr);
 
     [[nodiscard]] const std::shared_ptr<const FrameTree>& frames() const { return frames_; }
     /// Returns true if all colliders are at rest.
@@ -76,8 +75,7 @@ public:
     void begin_step(double begin, double end);
     /// Appends the bodies that come into the box during the step, except `except`, ascending, but kWorldBody first.
     void near(const Box3& box, BodyId except, std::vector<BodyId>& out) const;
-    /// Appends the bodies with a frame that may be in the box at a time, in s, in ascending order. If the time is
-    /// outside the step, it appends all bodies with a frame.
+    /// Appends the bodies with a frame that may be in the box at a time, in s, ascending; outside the step all.
     void near_at(const Box3& box, double time, std::vector<BodyId>& out) const;
     /// Returns true if all bodies certainly stay out of the box during the step.
     [[nodiscard]] bool all_stay_out(const Box3& box) const;

@@ -8,7 +8,6 @@
 /// Pieces end exactly at the keys of deforming meshes, and at the keys' times. So no segment contains a key.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -22,8 +21,8 @@ namespace ricochet {
 /// Returns the box in which bodies may touch a sphere that moves along a path in the world.
 [[nodiscard]] Box3 reach_of(const Path& path, double radius);
 
-/// Returns the largest duration, in s, over which a cubic Hermite path deviates from a path by at most `error`, in m.
-/// `fourth`: bound of the path's fourth derivative, in m/s^4.
+/// Returns the largest duration, in s, over which a cubic Hermite path of 4th derivative `fourth` errs by `error`, in
+/// m.
 [[nodiscard]] double longest_cubic(double error, double fourth);
 
 /// The surroundings of one path, and the times at which it is cut. All arguments must outlive the object.

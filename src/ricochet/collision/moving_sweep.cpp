@@ -16,8 +16,8 @@ namespace {
 /// Number of Newton steps in the search for the true time of an impact. Each step squares the error.
 constexpr int kNewtonSteps = 4;
 
-/// Largest duration, relative to a fine piece, of the rest of a path that is still swept as one fine piece. It exceeds
-/// 1 to cover rounding. Local, because only the cost depends on it.
+/// Largest rest of a path, in fine pieces, that is swept as one fine piece, above 1 for rounding. Local: only for
+/// speed.
 constexpr double kAlmostOne = 1.0 + 1e-9;
 
 /// Largest duration of a piece without contacts, in fine pieces. The error of its cubic is larger by the fourth power
@@ -123,8 +123,8 @@ Path MovingSweep::path_in(BodyId body, const SurfacesInTime& surfaces, const Pat
     const Vec3 to = surfaces.local_position(body, end.world, piece_.duration);
     const Vec3 leaving = surfaces.velocity_in(body, {start.position, 0.0, start.world}, piece_.velocity(0.0));
     if (!(piece_.duration > 0.0)) return line_path(from, leaving, 0.0);
-    // If the piece is shorter than the resolution of the clock, the body jumps from one pose to the next. A cubic with
-    // the velocities at both ends could then have any curvature.
+    // If the piece is shorter than the resolution of the clock, the body jumps from one pose to the next. A cubic could
+    // then have any curvature.
     if (piece_.duration <= ulp(clock_.end)) return straight_path(from, to, piece_.duration);
     const Vec3 arriving =
         surfaces.velocity_in(body, end, piece_.velocity(piece_.duration), SurfacesInTime::Limit::before);
@@ -181,8 +181,8 @@ void MovingSweep::meet_bodies(const SurfacesInTime& surfaces, const PathPoint& s
 void MovingSweep::meet_deforming(const SurfacesInTime& surfaces, const PathPoint& start,
                                  std::optional<Contact>& first) {
     const Path path = surfaces.reference() == kWorldBody ? piece_ : path_in(kWorldBody, surfaces, start);
-    const DeformingSweep sweep(surfaces.bodies().deforming(), path, {clock_.begin, clock_.end}, query_.radius,
-                               query_.supports, beside_in_bodies());
+    const DeformingSweep sweep(surfaces.bodies().deforming(), path, clock_, query_.radius, query_.supports,
+                               beside_in_bodies());
     const std::optional<Contact> contact = sweep.first_contact(
         pieces_.deforming(), [&](const SurfacesInOtherFrames::Deforming& triangle) { other_frames_->add(triangle); });
     if (contact) take(*contact, kWorldBody, surfaces, first);

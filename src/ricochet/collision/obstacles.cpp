@@ -1,7 +1,6 @@
 #include "ricochet/collision/obstacles.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "ricochet/core/tolerances.h"
 

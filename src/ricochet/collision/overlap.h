@@ -22,8 +22,7 @@ struct Overlap {
 /// finite. Needs one point query. Can be called from any number of threads.
 [[nodiscard]] std::optional<Overlap> deepest_overlap(const CollisionWorld& world, const Vec3& center, double radius);
 
-/// Returns the bodies with a frame that a sphere, or a point (radius 0), may touch or overlap at a time, in s. The list
-/// is in the order of the bodies and may contain other bodies, too.
+/// Returns, in order, the bodies with a frame that a sphere or point may touch at a time, in s, and perhaps more.
 [[nodiscard]] std::vector<BodyId> bodies_near(const MovingColliders& bodies, const Vec3& center, double radius,
                                               double time);
 

@@ -60,15 +60,10 @@ AffineMap checked_shape(const ColliderDescription& collider, const AffineMap& ma
 
 void bake_vertices(const ColliderDescription& collider, const std::vector<Vec3>& local, const AffineMap& map,
                    std::span<Vec3> world) {
-    parallel_for_blocks(local.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Vec3 vertex = flush_tiny(map.point(local[i]));
-            if (!is_finite(vertex) || max_abs(vertex) > kLargestCoordinate) {
-                refuse(collider,
-                       "a placed vertex is not finite or beyond 1e75 m, expected a smaller position or scale");
-            }
-            world[i] = vertex;
-        }
+    parallel_for(local.size(), kBlock, [&](std::size_t i) {
+        world[i] = flush_tiny(map.point(local[i]));
+        if (is_finite(world[i]) && max_abs(world[i]) <= kLargestCoordinate) return;
+        refuse(collider, "a placed vertex is not finite or beyond 1e75 m, expected a smaller position or scale");
     });
 }
 
@@ -89,11 +84,9 @@ Box3 box_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles)
 /// Returns 1 for each triangle without area, otherwise 0.
 PageVector<std::uint8_t> degenerate_flags(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
     PageVector<std::uint8_t> flags(triangles.size(), 0);
-    parallel_for_blocks(triangles.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t) {
-            const auto [a, b, c] = triangles[t];
-            flags[t] = are_collinear(vertices[a], vertices[b], vertices[c]) ? 1 : 0;
-        }
+    parallel_for(triangles.size(), kBlock, [&](std::size_t t) {
+        const auto [a, b, c] = triangles[t];
+        flags[t] = are_collinear(vertices[a], vertices[b], vertices[c]) ? 1 : 0;
     });
     return flags;
 }
@@ -174,12 +167,10 @@ void PlacedColliders::add_mesh(std::size_t number, const MeshShape& shape) {
     const std::size_t first = triangles_.size();
     const bool flip = map.mirrors();
     triangles_.resize(triangles_after);
-    parallel_for_blocks(mesh.triangles.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Triangle& t = mesh.triangles[i];
-            triangles_[first + i] = flip ? Triangle{base + t[0], base + t[2], base + t[1]}
-                                         : Triangle{base + t[0], base + t[1], base + t[2]};
-        }
+    parallel_for(mesh.triangles.size(), kBlock, [&](std::size_t i) {
+        const Triangle& t = mesh.triangles[i];
+        triangles_[first + i] = flip ? Triangle{base + t[0], base + t[2], base + t[1]}
+                                     : Triangle{base + t[0], base + t[1], base + t[2]};
     });
 }
 

@@ -1,7 +1,5 @@
 #include "ricochet/collision/safe_position.h"
 
-#include <algorithm>
-
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "ricochet/geometry/predicates/predicates.h"
 
@@ -27,8 +26,26 @@ bool comes_before(const ClosestPointOnTriangle& x, std::uint32_t x_triangle, con
     return x_triangle < y_triangle;
 }
 
-std::optional<SurfacePoint> if_within(const SurfacePoint& found, double within) {
-    return found.distance <= within ? std::optional(found) : std::nullopt;
+SurfacePoint point_of(const CollisionWorld::PlaneSurface& of, const Vec3& p) {
+    const double height = signed_distance(p, of.plane);
+    SurfacePoint found;
+    found.point = p - height * of.plane.normal;
+    found.direction = height < 0.0 ? -of.plane.normal : of.plane.normal;
+    found.distance = std::fabs(height);
+    found.side = side_of(of.plane, p);
+    found.surface = of.surface;
+    return found;
+}
+
+SurfacePoint point_of(const CollisionWorld::ShapeSurface& of, const Vec3& p) {
+    const ShapePoint nearest = of.shape.closest_point(p);
+    SurfacePoint found;
+    found.point = nearest.point;
+    found.direction = nearest.distance < 0.0 ? -nearest.normal : nearest.normal;
+    found.distance = std::fabs(nearest.distance);
+    found.side = of.shape.side(p);
+    found.surface = of.surface_of(nearest.part);
+    return found;
 }
 
 }  // namespace
@@ -56,63 +73,6 @@ std::uint32_t SignedDistance::mesh_of_triangle(std::uint32_t triangle) const {
     return static_cast<std::uint32_t>(after - meshes_.begin() - 1);
 }
 
-/// Visits triangles near p. Without culling it visits every triangle, as a reference for tests.
-template <class Visit>
-void SignedDistance::visit_near(const Vec3& p, double within, Visit&& visit) const {
-    if (world_.culls()) {
-        world_.bvh_for(0.0).query_point(p, within, visit);
-        return;
-    }
-    for (std::uint32_t triangle = 0; triangle < world_.triangles().size(); ++triangle) (void)visit(triangle);
-}
-
-/// Finds the nearest triangle of every mesh in one traversal.
-class SignedDistance::NearSearch {
-public:
-    NearSearch(const SignedDistance& distance, const Vec3& p, double within, std::vector<Candidate>& found)
-        : distance_(distance), p_(p), within_(within), found_(found) {
-        found_.clear();
-    }
-
-    /// Returns the distance within which the search continues. Once a triangle of each mesh has been found, this is the
-    /// largest distance of the nearest triangles found so far.
-    double operator()(std::uint32_t triangle) {
-        if (distance_.world_.is_degenerate(triangle)) return within_;
-        const std::uint32_t mesh = distance_.mesh_of_triangle(triangle);
-        const auto at = std::lower_bound(found_.begin(), found_.end(), mesh,
-                                         [](const Candidate& c, std::uint32_t m) { return c.mesh < m; });
-        Candidate candidate{mesh, triangle, {}};
-        if (at == found_.end() || at->mesh != mesh) {
-            candidate.nearest = distance_.nearest_on(triangle, p_);
-            found_.insert(at, candidate);
-        } else if (!distance_.improves(*at, candidate, p_)) {
-            return within_;
-        } else {
-            *at = candidate;
-        }
-        narrow();
-        return within_;
-    }
-
-private:
-    void narrow() {
-        if (found_.size() < distance_.meshes_.size()) return;
-        double farthest = 0.0;
-        for (const Candidate& c : found_) farthest = std::max(farthest, c.nearest.distance_squared);
-        within_ = std::min(within_, std::sqrt(farthest));
-    }
-
-    const SignedDistance& distance_;
-    const Vec3& p_;
-    double within_;
-    std::vector<Candidate>& found_;
-};
-
-ClosestPointOnTriangle SignedDistance::nearest_on(std::uint32_t triangle, const Vec3& p) const {
-    const auto [a, b, c] = world_.corners_of_triangle(triangle);
-    return closest_point_on_triangle(p, a, b, c);
-}
-
 bool SignedDistance::improves(const Candidate& best, Candidate& candidate, const Vec3& p) const {
     const auto [a, b, c] = world_.corners_of_triangle(candidate.triangle);
     Box3 box;
@@ -122,57 +82,45 @@ bool SignedDistance::improves(const Candidate& best, Candidate& candidate, const
     return comes_before(candidate.nearest, candidate.triangle, best.nearest, best.triangle);
 }
 
-std::optional<SignedDistance::Candidate> SignedDistance::nearest_triangle(std::uint32_t mesh, const Vec3& p,
-                                                                          double within) const {
-    const Mesh& of = meshes_[mesh];
-    std::optional<Candidate> best;
-    visit_near(p, within, [&](std::uint32_t triangle) {
-        if (triangle < of.first_triangle || triangle >= of.end_triangle || world_.is_degenerate(triangle))
-            return within;
+/// Finds the nearest triangle of each of the meshes [first, end) in one traversal. Once a triangle of each mesh has been
+/// found, the search continues within the largest distance found. The result is valid until this thread's next call.
+/// Without culling, every triangle is visited, as a reference for tests.
+const std::vector<SignedDistance::Candidate>& SignedDistance::nearest_triangles(std::uint32_t first, std::uint32_t end,
+                                                                                const Vec3& p, double within) const {
+    thread_local std::vector<Candidate> found;
+    found.clear();
+    const auto visit = [&](std::uint32_t triangle) {
+        const std::uint32_t mesh = mesh_of_triangle(triangle);
+        if (world_.is_degenerate(triangle) || mesh < first || mesh >= end) return within;
+        const auto at = std::lower_bound(found.begin(), found.end(), mesh,
+                                         [](const Candidate& c, std::uint32_t m) { return c.mesh < m; });
         Candidate candidate{mesh, triangle, {}};
-        if (!best) {
-            candidate.nearest = nearest_on(triangle, p);
-        } else if (!improves(*best, candidate, p)) {
+        if (at == found.end() || at->mesh != mesh) {
+            const auto [a, b, c] = world_.corners_of_triangle(triangle);
+            candidate.nearest = closest_point_on_triangle(p, a, b, c);
+            found.insert(at, candidate);
+        } else if (improves(*at, candidate, p)) {
+            *at = candidate;
+        } else {
             return within;
         }
-        best = candidate;
-        within = std::min(within, std::sqrt(candidate.nearest.distance_squared));
+        if (found.size() < end - first) return within;
+        double farthest = 0.0;
+        for (const Candidate& c : found) farthest = std::max(farthest, c.nearest.distance_squared);
+        within = std::min(within, std::sqrt(farthest));
         return within;
-    });
-    return best;
-}
-
-std::optional<SurfacePoint> SignedDistance::nearest_of_plane(std::uint32_t index, const Vec3& p, double within) const {
-    const auto& [plane, surface] = world_.planes()[index];
-    const double height = signed_distance(p, plane);
-    SurfacePoint found;
-    found.point = p - height * plane.normal;
-    found.direction = height < 0.0 ? -plane.normal : plane.normal;
-    found.distance = std::fabs(height);
-    found.side = side_of(plane, p);
-    found.surface = surface;
-    found.collider = world_.name_of(surface).collider;
-    return if_within(found, within);
-}
-
-std::optional<SurfacePoint> SignedDistance::nearest_of_shape(std::uint32_t index, const Vec3& p, double within) const {
-    const CollisionWorld::ShapeSurface& shape = world_.shapes()[index];
-    if (is_farther(shape.shape.bounds(), p, within * within)) return std::nullopt;
-    const ShapePoint nearest = shape.shape.closest_point(p);
-    SurfacePoint found;
-    found.point = nearest.point;
-    found.direction = nearest.distance < 0.0 ? -nearest.normal : nearest.normal;
-    found.distance = std::fabs(nearest.distance);
-    found.side = shape.shape.side(p);
-    found.surface = shape.surface_of(nearest.part);
-    found.collider = world_.name_of(found.surface).collider;
-    return if_within(found, within);
+    };
+    if (world_.culls()) {
+        world_.bvh_for(0.0).query_point(p, within, visit);
+    } else {
+        for (std::uint32_t triangle = 0; triangle < world_.triangles().size(); ++triangle) (void)visit(triangle);
+    }
+    return found;
 }
 
 /// Over a face, the distance from its plane is used, because it is more accurate. If p lies on the surface, the offset
 /// to p has no direction. The direction is then the pseudonormal, or the triangle's normal if the pseudonormal is zero.
-std::optional<SurfacePoint> SignedDistance::nearest_of_mesh(const Candidate& candidate, const Vec3& p,
-                                                            double within) const {
+SurfacePoint SignedDistance::point_of(const Candidate& candidate, const Vec3& p) const {
     const Mesh& mesh = meshes_[candidate.mesh];
     const std::uint32_t triangle = candidate.triangle - mesh.first_triangle;
     const ClosestPointOnTriangle& nearest = candidate.nearest;
@@ -191,34 +139,44 @@ std::optional<SurfacePoint> SignedDistance::nearest_of_mesh(const Candidate& can
     }
     found.side = mesh.normals.side(triangle, nearest, p);
     found.surface = world_.surface_of_triangle(candidate.triangle);
-    found.collider = mesh.collider;
     found.on_rim = mesh.normals.is_on_boundary(triangle, nearest.feature);
-    return if_within(found, within);
+    return found;
+}
+
+/// candidate: nearest triangle of the collider; null if it has none within the distance, or is no mesh.
+std::optional<SurfacePoint> SignedDistance::nearest_of(std::uint32_t collider, const Candidate* candidate,
+                                                       const Vec3& p, double within) const {
+    const CollisionWorld::Range& range = world_.range(collider);
+    SurfacePoint found;
+    if (range.kind == Kind::plane) {
+        found = ricochet::point_of(world_.planes()[range.index], p);
+    } else if (range.kind == Kind::shape) {
+        const CollisionWorld::ShapeSurface& shape = world_.shapes()[range.index];
+        if (is_farther(shape.shape.bounds(), p, within * within)) return std::nullopt;
+        found = ricochet::point_of(shape, p);
+    } else if (candidate != nullptr) {
+        found = point_of(*candidate, p);
+    } else {
+        return std::nullopt;
+    }
+    found.collider = collider;
+    return found.distance <= within ? std::optional(found) : std::nullopt;
 }
 
 std::optional<SurfacePoint> SignedDistance::closest(std::uint32_t collider, const Vec3& p, double within) const {
-    const CollisionWorld::Range& range = world_.range(collider);
-    if (range.kind == Kind::elsewhere) return std::nullopt;
-    if (range.kind == Kind::plane) return nearest_of_plane(range.index, p, within);
-    if (range.kind == Kind::shape) return nearest_of_shape(range.index, p, within);
-    const std::optional<Candidate> candidate = nearest_triangle(mesh_of(collider), p, within);
-    return candidate ? nearest_of_mesh(*candidate, p, within) : std::nullopt;
+    if (world_.range(collider).kind != Kind::mesh) return nearest_of(collider, nullptr, p, within);
+    const std::uint32_t mesh = mesh_of(collider);
+    const std::vector<Candidate>& found = nearest_triangles(mesh, mesh + 1, p, within);
+    return nearest_of(collider, found.empty() ? nullptr : &found.front(), p, within);
 }
 
 void SignedDistance::near(const Vec3& p, double within, std::vector<SurfacePoint>& out) const {
-    thread_local std::vector<Candidate> candidates;
-    visit_near(p, within, NearSearch(*this, p, within, candidates));
-    auto candidate = candidates.begin();
+    const auto meshes = static_cast<std::uint32_t>(meshes_.size());
+    const std::vector<Candidate>& candidates = nearest_triangles(0, meshes, p, within);
+    auto next = candidates.begin();
     for (std::uint32_t collider = 0; collider < world_.colliders().size(); ++collider) {
-        const CollisionWorld::Range& range = world_.range(collider);
-        std::optional<SurfacePoint> found;
-        if (range.kind == Kind::plane) {
-            found = nearest_of_plane(range.index, p, within);
-        } else if (range.kind == Kind::shape) {
-            found = nearest_of_shape(range.index, p, within);
-        } else if (candidate != candidates.end() && meshes_[candidate->mesh].collider == collider) {
-            found = nearest_of_mesh(*candidate++, p, within);
-        }
+        const bool has_candidate = next != candidates.end() && meshes_[next->mesh].collider == collider;
+        const auto found = nearest_of(collider, has_candidate ? &*next++ : nullptr, p, within);
         if (found) out.push_back(*found);
     }
 }

@@ -41,8 +41,8 @@ public:
     /// than `within` (in m, >= 0, may be infinite) or if the collider has no triangle with an area.
     [[nodiscard]] std::optional<SurfacePoint> closest(std::uint32_t collider, const Vec3& p, double within) const;
 
-    /// Appends the closest point of every collider that is at most `within` away, in m, in ascending order of the
-    /// colliders. Allocates memory only when `out` grows, and once per thread.
+    /// Appends the closest point of every collider that is at most `within` away, in m, in ascending order of
+    /// colliders.
     void near(const Vec3& p, double within, std::vector<SurfacePoint>& out) const;
 
     /// Returns the number of the collider's surfaces that the closed segment [p, q] intersects. Both ends must be
@@ -70,19 +70,14 @@ private:
         ClosestPointOnTriangle nearest;
     };
 
-    class NearSearch;
-
     [[nodiscard]] std::uint32_t mesh_of(std::uint32_t collider) const;
     [[nodiscard]] std::uint32_t mesh_of_triangle(std::uint32_t triangle) const;
-    template <class Visit>
-    void visit_near(const Vec3& p, double within, Visit&& visit) const;
-    [[nodiscard]] ClosestPointOnTriangle nearest_on(std::uint32_t triangle, const Vec3& p) const;
     [[nodiscard]] bool improves(const Candidate& best, Candidate& candidate, const Vec3& p) const;
-    [[nodiscard]] std::optional<Candidate> nearest_triangle(std::uint32_t mesh, const Vec3& p, double within) const;
-    [[nodiscard]] std::optional<SurfacePoint> nearest_of_plane(std::uint32_t index, const Vec3& p, double within) const;
-    [[nodiscard]] std::optional<SurfacePoint> nearest_of_shape(std::uint32_t index, const Vec3& p, double within) const;
-    [[nodiscard]] std::optional<SurfacePoint> nearest_of_mesh(const Candidate& candidate, const Vec3& p,
-                                                              double within) const;
+    [[nodiscard]] const std::vector<Candidate>& nearest_triangles(std::uint32_t first, std::uint32_t end, const Vec3& p,
+                                                                  double within) const;
+    [[nodiscard]] SurfacePoint point_of(const Candidate& candidate, const Vec3& p) const;
+    [[nodiscard]] std::optional<SurfacePoint> nearest_of(std::uint32_t collider, const Candidate* candidate,
+                                                         const Vec3& p, double within) const;
 
     const CollisionWorld& world_;
     std::vector<Mesh> meshes_;  ///< in ascending order of the colliders

@@ -40,6 +40,14 @@ private:
 void parallel_for_blocks(std::size_t count, std::size_t block_size,
                          const std::function<void(std::size_t block, std::size_t begin, std::size_t end)>& body);
 
+/// Calls body(i) for every i in [0, count), in blocks like parallel_for_blocks().
+template <class Body>
+void parallel_for(std::size_t count, std::size_t block_size, const Body& body) {
+    parallel_for_blocks(count, block_size, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) body(i);
+    });
+}
+
 /// Returns the sum over [0, count). The sums of the blocks are added in block order, so the bits do not depend on the
 /// number of threads. Throws like parallel_for_blocks().
 [[nodiscard]] double ordered_sum(std::size_t count, std::size_t block_size,

@@ -58,8 +58,7 @@ public:
         return std::span(particles_).subspan(begin_of(k), ends_[k] - begin_of(k));
     }
 
-    /// Cuts the list into full blocks of kParticleBlock particles. Few blocks are best: one thread adds up their
-    /// counts.
+    /// Cuts the list into full blocks, because a single thread adds up their counts.
     void cut_evenly();
     /// Sorts the list along a space-filling curve in the box, so that consecutive particles query the same triangles.
     void sort_by_position(const std::vector<Vec3>& positions, const Box3& box);
@@ -112,8 +111,7 @@ public:
     [[nodiscard]] const Response& response() const { return response_; }
     /// Returns a mover that moves the same particles by another response. The response must outlive the mover.
     [[nodiscard]] ActiveMover with(const Response& response) const { return {parts_, response}; }
-    /// Resets the counts of bounces, because a bounce budget applies to a whole step. Must be called at the start of a
-    /// step that dynamic bodies or coupled motion may divide into substeps.
+    /// Resets the counts of bounces, whose budget applies to a whole step, at the start of a step with substeps.
     void begin_step() { bounces_.assign(parts_.store.size(), 0); }
     /// Moves every particle of the set alone, on all threads. Writes one record per block of the set.
     void move(const ActiveSet& active, const TimeSpan& step, std::vector<BlockRecord>& blocks);

@@ -29,16 +29,12 @@ bool ActiveSet::is_worth_sorting(std::size_t all_particles, std::size_t triangle
 void ActiveSet::sort_by_position(const std::vector<Vec3>& positions, const Box3& box) {
     const auto bits = static_cast<unsigned>(std::bit_width(positions.size()));
     std::vector<std::uint64_t> keys(particles_.size());
-    parallel_for_blocks(keys.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            const std::uint32_t i = particles_[k];
-            keys[k] = morton_key(positions[i], box, i, bits);
-        }
+    parallel_for(keys.size(), kParticleBlock, [&](std::size_t k) {
+        const std::uint32_t i = particles_[k];
+        keys[k] = morton_key(positions[i], box, i, bits);
     });
     parallel_sort(keys);
-    parallel_for_blocks(keys.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) particles_[k] = index_of_key(keys[k], bits);
-    });
+    parallel_for(keys.size(), kParticleBlock, [&](std::size_t k) { particles_[k] = index_of_key(keys[k], bits); });
 }
 
 }  // namespace ricochet

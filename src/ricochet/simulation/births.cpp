@@ -15,11 +15,9 @@ namespace {
 
 /// Births in one block of parallel work. A block takes some hundred microseconds.
 constexpr std::size_t kBirthBlock = 64;
-/// Largest number of births in a wave, that is, of births that are taken off the schedule together. Larger waves need
-/// more memory for refused births. Smaller waves need more communication.
+/// Largest number of births that are taken off the schedule together. More need memory, fewer more communication.
 constexpr std::uint64_t kMostInWave = std::uint64_t{1} << 20U;
-/// Largest number of births in a wave for which every rank makes all births, if births can be refused. For so few
-/// births this is faster than communicating the refusals.
+/// Largest number of births in a wave that every rank makes, because this is faster than communicating refusals.
 constexpr std::size_t kFewBirths = 16;
 
 /// Largest number of time slices into which replay() divides the births, so that no list of births becomes long.
@@ -106,7 +104,10 @@ void StepBirths::make(Wave& wave) {
         if (all_make_all || share_.has_place_for(limits_.first_id + taken_ + k)) mine.push_back(k);
     }
     std::vector<std::optional<Particle>>& made = made_.emplace_back(mine.size());
-    make_by_threads(wave, mine, made);
+    parallel_for(mine.size(), kBirthBlock, [&](std::size_t j) {
+        const Entry& entry = wave[mine[j]];
+        made[j] = emitters_[entry.emitter].make(entry.due, tests_.alone);
+    });
     if (tests_.among) test_among(wave, mine, made);
     std::vector<std::uint64_t> refused;
     for (std::size_t j = 0; j < mine.size(); ++j) {
@@ -135,18 +136,8 @@ void StepBirths::keep_local(Wave& wave, std::span<const std::size_t> mine, std::
     made_here_ += here.size();
 }
 
-void StepBirths::make_by_threads(const Wave& wave, std::span<const std::size_t> mine,
-                                 std::vector<std::optional<Particle>>& made) const {
-    parallel_for_blocks(mine.size(), kBirthBlock, [&](std::size_t /*block*/, std::size_t begin, std::size_t end) {
-        for (std::size_t j = begin; j < end; ++j) {
-            const Entry& entry = wave[mine[j]];
-            made[j] = emitters_[entry.emitter].make(entry.due, tests_.alone);
-        }
-    });
-}
-
-// Tests each birth against the births before it. A refused birth is made again from its first random draw: it draws the
-// refused position again, and then further positions.
+// Tests each birth against the births before it. A refused birth is made again from its first random draw, so it first
+// draws the refused position again.
 void StepBirths::test_among(const Wave& wave, std::span<const std::size_t> mine,
                             std::vector<std::optional<Particle>>& made) const {
     const BirthTest both = [this](const Particle& particle) {
@@ -172,11 +163,11 @@ void StepBirths::give_ids() {
     all_ = Wave();  // frees memory for the particles
 }
 
-Emission::Emission(SimulationSetup& setup, Population& population, const PopulationParts& parts, RankShare& share)
+Emission::Emission(SimulationSetup& setup, Population& population, RankShare& share)
     : emitters_(make_emitters(setup)),
       has_spheres_(makes_spheres(setup.particles, emitters_)),
       population_(population),
-      parts_(parts),
+      parts_(population.parts()),
       share_(share) {}
 
 void Emission::add_first(std::vector<Particle>& first) {

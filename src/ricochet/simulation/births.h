@@ -66,8 +66,6 @@ private:
 
     [[nodiscard]] Wave next_wave();
     void make(Wave& wave);
-    void make_by_threads(const Wave& wave, std::span<const std::size_t> mine,
-                         std::vector<std::optional<Particle>>& made) const;
     void test_among(const Wave& wave, std::span<const std::size_t> mine,
                     std::vector<std::optional<Particle>>& made) const;
     void keep_local(Wave& wave, std::span<const std::size_t> mine, std::vector<std::optional<Particle>>& made);
@@ -92,8 +90,8 @@ private:
 /// Adds particles to a population: particles of the setup at the start, and particles of the emitters in each step.
 class Emission {
 public:
-    /// setup: its emitters are moved out. parts: parts of the population. All other arguments must outlive the object.
-    Emission(SimulationSetup& setup, Population& population, const PopulationParts& parts, RankShare& share);
+    /// setup: its emitters are moved out. All other arguments must outlive the object.
+    Emission(SimulationSetup& setup, Population& population, RankShare& share);
 
     [[nodiscard]] const std::vector<Emitter>& emitters() const { return emitters_; }
     /// Replaces the emitters by copies of them from an earlier time.
@@ -115,7 +113,7 @@ private:
     std::vector<Emitter> emitters_;
     bool has_spheres_;
     Population& population_;
-    PopulationParts parts_;
+    const PopulationParts& parts_;
     RankShare& share_;
 };
 

@@ -29,16 +29,16 @@ void BodiesModule::before_generation(const ParticleRange& generation, const Time
 /// Children repeat the substeps that the other particles have already taken, with the bodies on the same paths.
 double BodiesModule::plan(const ParticleRange& generation, const TimeSpan& rest) {
     if (!motion_.is_active()) return rest.end;
-    const TimeSpan part{rest.begin,
-                        generation.are_children ? motion_.repeat_substep(rest.begin) : plan_new(generation, rest)};
+    TimeSpan part = rest;
+    if (generation.are_children) {
+        part.end = motion_.repeat_substep(rest.begin);
+    } else {
+        part.end = motion_.next_substep_end(rest.begin, rest.end);
+        motion_.plan(part.begin, part.end, oldest_position());
+        if (!parts_.scene.moving().empty()) part.end = settle(generation, part);
+    }
     parts_.scene.begin_step(part);
     return part.end;
-}
-
-double BodiesModule::plan_new(const ParticleRange& generation, const TimeSpan& rest) {
-    const TimeSpan part{rest.begin, motion_.next_substep_end(rest.begin, rest.end)};
-    motion_.plan(part.begin, part.end, oldest_position());
-    return !parts_.scene.moving().empty() ? settle(generation, part) : part.end;
 }
 
 /// Plans a substep repeatedly, until planned loads agree with the particles' loads. Returns its end, in s.

@@ -82,8 +82,7 @@ void BodyPaths::plan(const std::vector<Wrench>& loads, double begin, double end)
         }
         frames_->forget_paths(frame_of_[k], oldest_);
         const double size = max_abs(next.at(end).world_from_frame.translation);
-        // The rotation is checked too, because a body can turn in place. Sweeps along such a fast rotation would not
-        // end.
+        // Sweeps along a very fast rotation would not end, even about a centre that does not move.
         const MotionBounds motion = next.bounds(begin, end);
         if (!(size <= kLargestCoordinate) || !(std::max(motion.origin[1], motion.rotation[1]) < kMaxSpeed)) {
             throw DivergedError(fmt::format(
@@ -126,8 +125,7 @@ double BodyPaths::repeat(double time) {
     return paths[path].end;
 }
 
-/// Publishes to a body's colliders whether the body's velocity jumps at the start of a path. The index of a path is the
-/// same for all bodies, because all bodies have the same substeps.
+/// Publishes to a body's colliders whether its velocity jumps at the start of a path. All bodies share the indices.
 void BodyPaths::publish_velocity_jump(std::size_t body, std::size_t path) const {
     if (collider_of_[body] == kWorldBody) return;
     const std::vector<BodyPath>& paths = of(body);

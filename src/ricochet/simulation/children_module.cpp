@@ -1,9 +1,7 @@
 #include "ricochet/simulation/modules.h"
 
 #include <algorithm>
-#include <utility>
 
-#include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/cloud_motion.h"
 
 namespace ricochet {

@@ -3,7 +3,6 @@
 /// all contacts of such an island as one problem. Then each member moves alone.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -23,8 +22,8 @@ public:
     /// contacts must outlive the object.
     ContactIslands(const PairParts& parts, const LastingContacts& contacts) : parts_(parts), contacts_(contacts) {}
 
-    /// Returns true if two members pressed on each other in the last step. The island is then a contact island from the
-    /// start of the step, because such a contact usually lasts.
+    /// Returns true if two members pressed on each other in the last step. Such a contact usually lasts, so the island
+    /// is a contact island from the start of the step.
     [[nodiscard]] bool begins_as_contact_island(const std::vector<IslandMember>& members) const;
     /// Returns the numbers of impacts beyond which an event-driven island becomes a contact island. With every method,
     /// two spheres that collide only with each other in a step collide at the exact time of impact.

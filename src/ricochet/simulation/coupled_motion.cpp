@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "ricochet/core/error.h"
@@ -16,16 +15,13 @@ namespace {
 /// Members per unit of parallel work.
 constexpr std::size_t kBlock = 256;
 
-/// Largest number of support predictions for a step before half of the step is tried. Local, because kPredictionEnergy
-/// decides about the accuracy.
+/// Largest number of support predictions before half of the step is tried. Local: kPredictionEnergy decides.
 constexpr int kMostPredictions = 16;
 
-/// Number of predictions in a row without improvement after which the iteration stops. Local, because the best
-/// prediction is used.
+/// Number of predictions in a row without improvement after which the iteration stops. Local: the best is used.
 constexpr int kMostWorse = 3;
 
-/// Half of a step counts as better if its residual is below this fraction of the residual of the whole step. Local: a
-/// rule of the search for the best prediction.
+/// Half of a step is better if its residual is below this part of the whole step's. Local: a rule of the search.
 constexpr double kWorthCutting = 0.5;
 
 /// Number of halvings in a row without improvement after which the search stops, and uses the best prediction.
@@ -118,15 +114,13 @@ std::vector<Vec3> CoupledMotion::expected_reactions(const Particles& particles,
     const std::vector<Vec3>& v = system_.velocities();
     const std::vector<Vec3> mutual = system_.mutual_accelerations(system_.time(), x, v);
     std::vector<Vec3> impulses(system_.size());
-    parallel_for_blocks(system_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            const std::uint32_t i = system_.members()[k];
-            if (system_.is_pinned(k) || particles.frozen[i] != 0) continue;
-            Vec3 pull = system_.spring_force_on(k, x, v) / system_.mass(k) +
-                        system_.own_acceleration(k, system_.time(), x[k], v[k]);
-            if (!mutual.empty()) pull += mutual[k];
-            if (is_finite(pull)) impulses[k] = contact_acceleration(i, pull) - pull;
-        }
+    parallel_for(system_.size(), kBlock, [&](std::size_t k) {
+        const std::uint32_t i = system_.members()[k];
+        if (system_.is_pinned(k) || particles.frozen[i] != 0) return;
+        Vec3 pull = system_.spring_force_on(k, x, v) / system_.mass(k) +
+                    system_.own_acceleration(k, system_.time(), x[k], v[k]);
+        if (!mutual.empty()) pull += mutual[k];
+        if (is_finite(pull)) impulses[k] = contact_acceleration(i, pull) - pull;
     });
     return impulses;
 }
@@ -153,38 +147,32 @@ void CoupledMotion::plan_flights(const SystemStep& step) {
     const bool holds = holds_coupling(integrator_.kind);
     // The path of a custom solver is a cubic, like that of rk4.
     const IntegratorKind kind = solver_ ? IntegratorKind::rk4 : integrator_.kind;
+    const auto mutual_pull = [&](std::size_t k) {
+        if (step.mutual_start.empty()) return MutualPull{};
+        const Vec3 rate = (step.mutual_end[k] - step.mutual_start[k]) / step.duration;
+        return MutualPull{step.mutual_start[k], rate, system_.time()};
+    };
     coupled_.resize(system_.size());
     deviations_.reset(system_.size(), kind);
-    parallel_for_blocks(system_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            coupled_[k] = holds ? CoupledMember(constrained_coupling(integrator_.kind, system_, step, k))
-                                : CoupledMember(system_, flights_, k, mutual_pull(step, k));
-            flights_[k] = planned_flight(kind, system_, step, k);
-            flights_[k].start.coupling = &coupled_[k];
-            // A custom solver may apply other forces than springs, so its flights are not integrated again. Velocities
-            // along them are derivatives of the path.
-            flights_[k].steps_again = flights_[k].steps_again || !(holds || solver_);
-        }
+    parallel_for(system_.size(), kBlock, [&](std::size_t k) {
+        coupled_[k] = holds ? CoupledMember(constrained_coupling(integrator_.kind, system_, step, k))
+                            : CoupledMember(system_, flights_, k, mutual_pull(k));
+        flights_[k] = planned_flight(kind, system_, step, k);
+        flights_[k].start.coupling = &coupled_[k];
+        // A custom solver may apply other forces, so its flights are not integrated again.
+        flights_[k].steps_again = flights_[k].steps_again || !(holds || solver_);
     });
 }
 
-MutualPull CoupledMotion::mutual_pull(const SystemStep& step, std::size_t k) const {
-    if (step.mutual_start.empty()) return {};
-    return {step.mutual_start[k], (step.mutual_end[k] - step.mutual_start[k]) / step.duration, system_.time()};
-}
-
-/// Returns the shortest allowed substep, in s. A substep must advance the clock and the particles.
-double CoupledMotion::shortest_part() const {
-    return std::max(kShortestSubstep * time_step_, 2.0 * ulp(system_.time()));
-}
-
-/// Returns a substep whose equations do not include supports. If the step has used up all its substeps, the substep
-/// covers the rest of the step, which then counts as unsolved.
+/// Returns a substep whose equations do not include supports. If the step has used up all its substeps, this one covers
+/// the rest of the step, which then counts as unsolved.
 SystemStep CoupledMotion::stepped(double duration) {
     if (!solver_) {
         const bool is_spent = ++substeps_ > kMostSubsteps;
         const double first_try = first_try_ > 0.0 && !is_spent ? first_try_ : duration;
-        SystemStep step = step_system(integrator_, system_, duration, first_try, is_spent ? duration : shortest_part());
+        // A substep must advance the clock and the particles.
+        const double shortest = std::max(kShortestSubstep * time_step_, 2.0 * ulp(system_.time()));
+        SystemStep step = step_system(integrator_, system_, duration, first_try, is_spent ? duration : shortest);
         first_try_ = step.next_duration;
         return step;
     }

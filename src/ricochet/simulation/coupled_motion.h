@@ -6,7 +6,6 @@
 #include <functional>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -90,8 +89,7 @@ public:
     [[nodiscard]] const Coupling* coupling_of(std::size_t i) const {
         return holds(i) ? flights_[slots_[i]].start.coupling : nullptr;
     }
-    /// Returns true if the planned flight of member i contains expected reactions of surfaces. Only the other members
-    /// use this flight, because member i itself collides with its surfaces.
+    /// Returns true if the flight of member i contains expected reactions of surfaces, for the other members only.
     [[nodiscard]] bool is_planned_in_contact(std::size_t i) const {
         return holds(i) && system_.expected_reaction(slots_[i]) != Vec3{};
     }
@@ -99,8 +97,7 @@ public:
     [[nodiscard]] bool wants_deviation_of(std::size_t i) const {
         return holds(i) && flights_[slots_[i]].start.coupling->varies();
     }
-    /// Records the flown path of member i, and its velocity change by surfaces, in m/s. Several threads may call this
-    /// function for different members.
+    /// Records the flown path of member i, and its velocity change by surfaces, in m/s, on any thread.
     void add_deviation(std::size_t i, std::span<const FlownPiece> flown, const Vec3& velocity_change) {
         deviations_.record(slots_[i], flown, velocity_change);
     }
@@ -146,9 +143,7 @@ private:
     static constexpr std::uint32_t kNoSlot = 0xFFFFFFFFU;
 
     [[nodiscard]] std::vector<std::uint32_t> members_of(const Particles& particles, double time) const;
-    [[nodiscard]] MutualPull mutual_pull(const SystemStep& step, std::size_t k) const;
     [[nodiscard]] SystemStep stepped(double duration);
-    [[nodiscard]] double shortest_part() const;
     [[nodiscard]] std::vector<Vec3> expected_reactions(const Particles& particles,
                                                        const ContactAcceleration& contact_acceleration) const;
     /// Predicted supports of members in a step, and the solution of the step with them.

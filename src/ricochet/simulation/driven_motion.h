@@ -7,11 +7,9 @@
 /// that would add energy. A preview of the particles' motion gives the time of this impact.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <span>
 #include <utility>
 #include <vector>

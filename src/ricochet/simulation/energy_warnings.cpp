@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -117,8 +116,7 @@ std::optional<Subject> subject_of(const EmitterDescription& emitter, std::size_t
     subject.state.radius = emitter.radius.mean;
     subject.state.id = std::numeric_limits<std::uint64_t>::max();
     subject.lifetime = emitter.lifetime.mean;
-    subject.name = emitter.name.empty() ? fmt::format("a particle of emitters[{}]", number)
-                                        : fmt::format("a particle of '{}'", emitter.name);
+    subject.name = "a particle of " + named(emitter.name, "emitters", number);
     return subject;
 }
 
@@ -161,8 +159,8 @@ public:
     /// Returns true if the particle comes so near to a point of infinite force that no sub-step is short enough.
     [[nodiscard]] bool falls_in() const { return is_coarse_; }
 
-    /// Returns the unphysical growth of the energy in the trial divided by the largest kinetic energy. The result is
-    /// kExplodes if the growth is unlimited, and 0 if the energy does not grow.
+    /// Returns the unphysical growth of the energy in the trial divided by the largest kinetic energy: kExplodes if it
+    /// is unlimited, 0 if the energy does not grow.
     [[nodiscard]] double gain(const Integrator& integrator) const {
         Course course = course_of(integrator, kMostSubsteps);
         if (course.energies.size() < steps_) return kExplodes;
@@ -257,8 +255,8 @@ private:
     bool is_coarse_ = false;
 };
 
-/// Returns the integrator that moves the particle. For coupled particles, `ballistic` is replaced by velocity_verlet,
-/// because their forces are not kept constant over a step.
+/// Returns the integrator that moves the particle. For coupled particles, velocity_verlet replaces `ballistic`, because
+/// their forces vary over a step.
 Integrator integrator_of(const Subject& subject, Integrator integrator) {
     if (subject.is_coupled && integrator.kind == IntegratorKind::ballistic) {
         integrator.kind = IntegratorKind::velocity_verlet;

@@ -25,7 +25,7 @@ struct FlightKnot {
 };
 
 /// Returns the state at a time, in s, on the cubic polynomial that matches the positions and velocities at both ends of
-/// a flight. The state is exact for a constant acceleration.
+/// a flight. It is exact for a constant acceleration.
 [[nodiscard]] inline PhaseState state_between(const FlightKnot& a, const FlightKnot& b, double time) {
     const double duration = b.time - a.time;
     if (!(duration > 0.0)) return {a.position, a.after};

@@ -50,31 +50,26 @@ void FreeFlights::advance_together(std::size_t begin, std::size_t end, const Fre
     }
 }
 
-void FreeFlights::advance_each(std::size_t begin, std::size_t end, const TimeSpan& step, BlockRecord* record) {
-    for (std::size_t i = begin; i < end; ++i) {
-        if (schedule_.is_in_free_flight(i)) advance_one(i, flight_of(i, step), step, record);
-    }
-}
-
-FreeFlight FreeFlights::flight_of(std::size_t i, const TimeSpan& step) const {
-    const std::optional<Vec3>& common = forces_.common_acceleration();
-    return {integrator_, common ? *common : forces_.acceleration(store_.force_input(i, step.begin)),
-            step.end - step.begin};
-}
-
-void FreeFlights::advance_one(std::size_t i, const FreeFlight& flight, const TimeSpan& step, BlockRecord* record) {
+void FreeFlights::advance_each(std::size_t begin, std::size_t stop, const TimeSpan& step, BlockRecord* record) {
     Particles& particles = store_.particles();
-    const PhaseState end = flight.step(particles.position[i], particles.velocity[i]);
-    if (observers_.check != nullptr) {
-        const Segment segment{particles.position[i], end.position, step.begin};
-        ForceInput moved = store_.force_input(i, step.end);
-        moved.position = end.position;
-        moved.velocity = end.velocity;
-        observers_.check->check(i, particles, moved, {step.end, step.end}, {&segment, 1}, record->violations);
+    const std::optional<Vec3>& common = forces_.common_acceleration();
+    for (std::size_t i = begin; i < stop; ++i) {
+        if (!schedule_.is_in_free_flight(i)) continue;
+        const FreeFlight flight(integrator_,
+                                common ? *common : forces_.acceleration(store_.force_input(i, step.begin)),
+                                step.end - step.begin);
+        const PhaseState end = flight.step(particles.position[i], particles.velocity[i]);
+        if (observers_.check != nullptr) {
+            const Segment segment{particles.position[i], end.position, step.begin};
+            ForceInput moved = store_.force_input(i, step.end);
+            moved.position = end.position;
+            moved.velocity = end.velocity;
+            observers_.check->check(i, particles, moved, {step.end, step.end}, {&segment, 1}, record->violations);
+        }
+        if (observers_.passages != nullptr) note_passages(i, end, flight.duration(), *record);
+        particles.position[i] = end.position;
+        particles.velocity[i] = end.velocity;
     }
-    if (observers_.passages != nullptr) note_passages(i, end, flight.duration(), *record);
-    particles.position[i] = end.position;
-    particles.velocity[i] = end.velocity;
 }
 
 /// Records a particle's passages through counters in a flight that is not stored yet. end: state at its end.
@@ -122,10 +117,8 @@ void FreeFlights::catch_up_active(std::span<const std::uint32_t> active) {
 
 void FreeFlights::catch_up_all() {
     if (deferred_->is_empty()) return;
-    parallel_for_blocks(store_.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            if (!schedule_.is_left_alone(i)) catch_up(i);
-        }
+    parallel_for(store_.size(), kParticleBlock, [&](std::size_t i) {
+        if (!schedule_.is_left_alone(i)) catch_up(i);
     });
     deferred_->clear();
 }

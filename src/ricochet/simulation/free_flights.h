@@ -93,8 +93,8 @@ public:
                 const Integrator& integrator, const MoveObservers& observers)
         : store_(store), schedule_(schedule), forces_(forces), integrator_(integrator), observers_(observers) {}
 
-    /// Advances the particles of the range that are in free flight. Returns the particles that need a query, in
-    /// ascending order, in one block per kParticleBlock particles of the range.
+    /// Advances the free flights of the range. Returns the particles that need a query, ascending, in blocks of the
+    /// range.
     [[nodiscard]] ActiveSet advance(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks);
 
     /// Starts to defer steps. Particles in free flight then keep their stored state, and make several steps together
@@ -125,9 +125,7 @@ public:
 private:
     void advance_together(std::size_t begin, std::size_t end, const FreeFlight& flight);
     void advance_each(std::size_t begin, std::size_t end, const TimeSpan& step, BlockRecord* record);
-    void advance_one(std::size_t i, const FreeFlight& flight, const TimeSpan& step, BlockRecord* record);
     void note_passages(std::size_t i, const PhaseState& end, double duration, BlockRecord& record) const;
-    [[nodiscard]] FreeFlight flight_of(std::size_t i, const TimeSpan& step) const;
     void catch_up(std::size_t i);
     void catch_up_active(std::span<const std::uint32_t> active);
     void catch_up_all();

@@ -88,11 +88,9 @@ void HeatStage::before_generation(const ParticleRange& generation, const TimeSpa
     gains_.clear();
     if (!heat_.convection || heat_.convection->coefficient) return;
     coefficients_.resize(generation.size());
-    parallel_for_blocks(generation.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            const std::size_t i = generation.begin + k;
-            coefficients_[k] = coefficient(i, life_in(store_.particles(), i, step).begin);
-        }
+    parallel_for(generation.size(), kParticleBlock, [&](std::size_t k) {
+        const std::size_t i = generation.begin + k;
+        coefficients_[k] = coefficient(i, life_in(store_.particles(), i, step).begin);
     });
 }
 
@@ -116,15 +114,13 @@ void HeatStage::after_generation(const ParticleRange& generation, const TimeSpan
     const auto is_before = [](const HeatGain& a, const HeatGain& b) { return a.particle < b.particle; };
     std::stable_sort(gains_.begin(), gains_.end(), is_before);
     Particles& particles = store_.particles();
-    parallel_for_blocks(generation.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            const std::size_t i = generation.begin + k;
-            const TimeSpan life = life_in(particles, i, step);
-            if (particles.frozen[i] != 0 || particles.absorbed[i] == 1 || life.end <= life.begin) continue;
-            const auto [first, last] = std::equal_range(gains_.begin(), gains_.end(), HeatGain{i, 0.0, 0.0}, is_before);
-            const double before = coefficients_.empty() ? 0.0 : coefficients_[k];
-            particles.attributes.set(column_, i, {changed(i, life, before, {first, last}), 0.0, 0.0});
-        }
+    parallel_for(generation.size(), kParticleBlock, [&](std::size_t k) {
+        const std::size_t i = generation.begin + k;
+        const TimeSpan life = life_in(particles, i, step);
+        if (particles.frozen[i] != 0 || particles.absorbed[i] == 1 || life.end <= life.begin) return;
+        const auto [first, last] = std::equal_range(gains_.begin(), gains_.end(), HeatGain{i, 0.0, 0.0}, is_before);
+        const double before = coefficients_.empty() ? 0.0 : coefficients_[k];
+        particles.attributes.set(column_, i, {changed(i, life, before, {first, last}), 0.0, 0.0});
     });
 }
 

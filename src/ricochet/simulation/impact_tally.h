@@ -30,8 +30,7 @@ public:
     /// is compared with the energy that the impacts dissipate if each acts alone. doubt: safety margin that is added to
     /// the change, as a fraction of the exchanged energies.
     [[nodiscard]] bool changes_energy(double time, double doubt = 0.0) const;
-    /// Returns the velocity change, in m/s, that a wrench causes on the body at the time and position of a load. The
-    /// moment of the wrench refers to the same point as the moment of wrench().
+    /// Returns a body's velocity change, in m/s, by a wrench at the time and position of a load, about the same point.
     [[nodiscard]] double speed_by(const Wrench& wrench, const ColliderLoad& load) const;
     /// Returns the factor, at least 1, by which the body reacts more strongly to all impacts together at a time, in s,
     /// than to each impact alone: a ratio of energies. It is 1 if applying them together would not change the energy by

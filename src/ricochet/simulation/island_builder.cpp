@@ -177,9 +177,8 @@ IslandBuilder::OutOfBoundsMembers IslandBuilder::members_out_of_bounds() const {
 std::vector<std::vector<std::uint32_t>> IslandBuilder::met_by(const OutOfBoundsMembers& off) {
     std::vector<std::vector<std::uint32_t>> met(off.of_this_round);
     const auto for_each = [&](const auto& body) {
-        parallel_for_blocks(met.size(), kIslandBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-            for (std::size_t n = begin; n < end; ++n) body(*off.members[n], off.swept[n], met[n]);
-        });
+        parallel_for(met.size(), kIslandBlock,
+                     [&](std::size_t n) { body(*off.members[n], off.swept[n], met[n]); });
     };
     for_each([&](const IslandMember&, const Box3& swept, auto& found) { plans_.find_near(swept, found); });
     std::vector<std::uint32_t> all;

@@ -5,7 +5,6 @@
 #include <iterator>
 #include <optional>
 
-#include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/sleep_rules.h"
 
@@ -86,8 +85,8 @@ void LastingContacts::wake_alone(const std::vector<std::uint64_t>& woken, double
         if (*i >= first_ && *i - first_ < traces_.is_asleep.size()) traces_.is_asleep[*i - first_] = 0;
     }
     std::vector<WarmStartMemory::Entry> contacts = sleeping_islands_.wake(woken);
-    // Keeps only contacts that the memory lacks. Contacts of spheres that were awake before are in the memory already,
-    // or have ended. Contacts without an impulse have no effect.
+    // Keeps only contacts with an impulse that the memory lacks, because the others of awake spheres are known or
+    // ended.
     const auto has_slept = [&](std::uint64_t particle) {
         return std::binary_search(woken.begin(), woken.end(), particle) || sleeping_islands_.is_asleep(particle) ||
                is_pinned(parts_.store, particle);

@@ -41,13 +41,13 @@ public:
     [[nodiscard]] const PairTraces& find_traces();
     /// Wakes the sleepers that other spheres hit according to the plans. Returns false if no sleeper is hit.
     [[nodiscard]] bool wake_hit_sleepers(const PairPlans& plans, const TimeSpan& step);
-    /// Returns the sleepers that spheres of a solved island have hit or pushed. The solution treated these sleepers as
-    /// walls. The caller must wake them, and begin the step again.
+    /// Returns the sleepers that spheres of a solved island have hit or pushed. The solution treated them as walls. The
+    /// caller must wake them, and begin the step again.
     [[nodiscard]] std::vector<std::uint64_t> loaded_sleepers(std::span<const PairImpactRecord> impacts,
                                                              const ContactIslandTrace& trace,
                                                              const TimeSpan& step) const;
-    /// Wakes sleepers, and all sleepers within a distance of `contacts` contacts from them, at a time, in s. After
-    /// several calls in a step, further calls reach farther.
+    /// Wakes sleepers, and all sleepers within `contacts` contacts of them, at a time, in s. After several calls in a
+    /// step, further calls reach farther.
     void wake(const std::vector<std::uint64_t>& particles, double time, int contacts = 1);
     /// Returns true if a particle of the range sleeps in an island. i: index in the particles' arrays.
     [[nodiscard]] bool sleeps(std::size_t i) const { return traces_.is_asleep[i - first_] != 0; }
@@ -56,8 +56,8 @@ public:
     /// Returns the contacts of the last step's contact islands.
     [[nodiscard]] const WarmStartMemory& memory() const { return memory_; }
 
-    /// Puts members of a contact island to sleep by changing their plans. These members have been at rest for several
-    /// steps, and no awake sphere pushes them or rests on them.
+    /// Puts members of a contact island to sleep by changing their plans, if they have been at rest for several steps
+    /// and no awake sphere pushes them or rests on them.
     void plan_sleep(std::span<const ContactIslandMember> members, ContactIsland& island, const TimeSpan& step,
                     ContactIslandTrace& trace) const;
 

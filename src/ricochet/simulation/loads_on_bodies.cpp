@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <utility>
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/impact_tally.h"

@@ -78,8 +78,7 @@ private:
 /// View of the loads in a substep, consecutive for each particle, in the order of time. Its arguments must outlive it.
 class LoadsOnBodies {
 public:
-    /// collider_of: body id of the colliders of each body, or kWorldBody for a body without colliders. slow: largest
-    /// speed of impacts that begin lasting contact, in m/s.
+    /// collider_of: see BodyPaths. slow: largest speed of impacts that begin lasting contact, in m/s.
     LoadsOnBodies(std::span<const DrivenBody> bodies, std::span<const BodyId> collider_of,
                   const MovingColliders* colliders, double slow)
         : bodies_(bodies), collider_of_(collider_of), colliders_(colliders), slow_(slow) {}

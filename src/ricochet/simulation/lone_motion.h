@@ -33,8 +33,8 @@ public:
     /// Returns false for a sphere that is pinned or asleep, or that rests on walls alone, away from moving colliders.
     [[nodiscard]] bool moves(std::uint32_t k) const;
 
-    /// Returns the box of a sphere that may touch walls. The box is empty if the sphere cannot meet other spheres. It
-    /// is also empty for sleepers, which are in a separate grid.
+    /// Returns the box of a sphere that may touch walls. It is empty if the sphere cannot meet others, and for
+    /// sleepers, which are in a separate grid.
     [[nodiscard]] Box3 reachable_box(std::uint32_t k) const;
     /// Returns true for a sphere that may leave its box.
     [[nodiscard]] bool may_leave(const Box3& box) const;
@@ -43,7 +43,7 @@ public:
     [[nodiscard]] FlownPiece free_path(std::uint32_t k) const;
     [[nodiscard]] Box3 box_of_free(std::uint32_t k) const;
     /// Returns true if the look-ahead shows that a sphere flies freely. With contact islands, results depend on this
-    /// decision, so the state of the sphere must also show that it is free.
+    /// decision, so the state of the sphere must also show it.
     [[nodiscard]] bool is_known_free(std::uint32_t k) const;
     /// Returns true if a sphere flies freely. Tests this by a trial move of the sphere alone.
     [[nodiscard]] bool flies_freely(std::uint32_t k, MoveScratch& scratch) const;

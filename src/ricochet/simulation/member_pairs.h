@@ -2,7 +2,6 @@
 /// Private to the simulation: pairs of members of a contact island that are near each other.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -40,16 +40,13 @@ public:
     /// the substep that an earlier module has planned. Only SpringsModule and BodiesModule override this function.
     virtual double plan(const ParticleRange& /*generation*/, const TimeSpan& rest) { return rest.end; }
     virtual void before_substep(const ParticleRange& /*generation*/, const TimeSpan& /*substep*/) {}
-    /// Moves the module's own particles. The particles that no module moves have been moved before. blocks: records of
-    /// the substep so far.
+    /// Moves the module's own particles, after those that no module moves. blocks: records of the substep so far.
     virtual void after_substep(const ParticleRange& /*generation*/, const TimeSpan& /*substep*/,
                                std::vector<BlockRecord>& /*blocks*/) {}
-    /// Corrects velocities after all particles of the generation have been moved. Throws if a run cannot continue with
-    /// the result.
+    /// Corrects velocities after all particles of the generation have been moved, or throws if this is impossible.
     virtual void correct(const ParticleRange& /*generation*/, const TimeSpan& /*substep*/,
                          std::vector<BlockRecord>& /*blocks*/) {}
-    /// Processes the records of the substep. loads: loads of all blocks. Modules can complete the loads before they are
-    /// recorded.
+    /// Processes the records of the substep. Modules can complete the loads of all blocks before they are recorded.
     virtual void record(const ParticleRange& /*generation*/, const std::vector<BlockRecord>& /*blocks*/,
                         std::vector<ColliderLoad>& /*loads*/) {}
     virtual void after_generation(const ParticleRange& /*generation*/, const TimeSpan& /*step*/) {}

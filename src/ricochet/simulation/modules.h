@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "ricochet/simulation.h"
@@ -125,7 +124,6 @@ public:
 private:
     template <class Archive>
     void archive_bodies(Archive& a);
-    [[nodiscard]] double plan_new(const ParticleRange& generation, const TimeSpan& rest);
     [[nodiscard]] double settle(const ParticleRange& generation, TimeSpan part);
     [[nodiscard]] double oldest_position() const;
 

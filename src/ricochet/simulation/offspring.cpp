@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "ricochet/collision/contact_query.h"
@@ -241,8 +240,7 @@ void Offspring::allot(std::vector<Claim>& claims, std::uint64_t living, std::uin
     }
 }
 
-/// Does the work of allot() if several ranks share the run. Each rank has the claims of all ranks, and makes the same
-/// decisions. The events of one parent are on one rank.
+/// Makes the decisions of allot() on each of several ranks, from the claims of all. A parent's events are on one rank.
 void Offspring::allot_together(std::vector<Claim>& mine, std::size_t here, OffspringCounts& counts) const {
     const auto rank = static_cast<std::uint32_t>(parts_.share.ranks().rank());
     for (std::size_t k = 0; k < mine.size(); ++k) mine[k].rank = rank, mine[k].event = k;

@@ -52,8 +52,7 @@ struct OffspringCounts {
 /// Spawns the children of a simulation's particles.
 class Offspring {
 public:
-    /// Parts of a run that spawning needs. All parts must outlive the Offspring object. after_move() throws RunError if
-    /// more particles would live than fit into `memory`.
+    /// Parts of a run that spawning needs, and that must outlive it. after_move() throws RunError without memory.
     struct Parts {
         const std::vector<Emitter>& emitters;  ///< all emitters of the scene
         const CollisionScene& scene;
@@ -69,8 +68,7 @@ public:
     /// Returns the least impulse, in N s, of an impact that shatters particle i; infinity if none shatters it.
     [[nodiscard]] double shatter_impulse(const Particles& particles, std::size_t i) const;
 
-    /// Stores the states of the particles from index `first` on, before they are moved. sides: sides of surfaces of
-    /// these particles; empty if the response does not use sides.
+    /// Stores the states of the particles from `first` on before they move, with their sides if the response has them.
     void before_move(const Particles& particles, std::size_t first, std::span<const SideMemory> sides);
     /// Returns the children that the stored particles have spawned in [from, to), in the order of (time, parent,
     /// ordinal). records: their impacts, in the order of time for each particle. counts: sums over all ranks, on each

@@ -19,8 +19,8 @@
 
 namespace ricochet {
 
-/// Cores by particle. The object uses no memory until the first core is set. Several threads may change cores of
-/// different particles, except by the first call of set().
+/// Cores by particle. The object uses no memory until the first set(). Several threads may change cores of different
+/// particles, except by this first call.
 class OverlapCores {
 public:
     /// Returns true if particle i is in overlap.

@@ -106,18 +106,15 @@ void PairMotion::after_substep(const ParticleRange& /*generation*/, const TimeSp
     }
     contacts_.check_sleepers(step, blocks);
     contacts_.end(traces, impacts, step);
-    record_impacts(impacts, joined(islands, &IslandBuilder::Island::meetings), step.end);
-    islands.clear();
-}
-
-/// Records the impacts of a substep, island by island. meetings: the same for the verifier. time: its end, in s.
-void PairMotion::record_impacts(const std::vector<PairImpactRecord>& impacts, const std::vector<PairMeeting>& meetings,
-                                double time) {
     SimulationStatistics& statistics = recorder_.statistics();
     statistics.pair_impacts += impacts.size();
-    statistics.overlap_largest = std::max(statistics.overlap_largest, largest_overlap(time));
+    statistics.overlap_largest = std::max(statistics.overlap_largest, largest_overlap(step.end));
     recorder_.add_pair_impacts(impacts);
-    if (observers_.check != nullptr) recorder_.add_pair_violations(RunCheck::check_meetings(meetings, impact_audit_));
+    if (observers_.check != nullptr) {
+        const std::vector<PairMeeting> meetings = joined(islands, &IslandBuilder::Island::meetings);
+        recorder_.add_pair_violations(RunCheck::check_meetings(meetings, impact_audit_));
+    }
+    islands.clear();
 }
 
 void PairMotion::write_back(std::vector<IslandMember>& members, const TimeSpan& step, BlockRecord& record) {

@@ -48,8 +48,6 @@ private:
     }
     [[nodiscard]] bool wake_loaded_sleepers(const TimeSpan& step);
     void write_back(std::vector<IslandMember>& members, const TimeSpan& step, BlockRecord& record);
-    void record_impacts(const std::vector<PairImpactRecord>& impacts, const std::vector<PairMeeting>& meetings,
-                        double time);
     [[nodiscard]] double largest_overlap(double time) const;
 
     PairParts parts_;

@@ -63,9 +63,7 @@ void PairPlans::collect_pairs() {
     for (const NeighbourPair& pair : pairs_) near.push_back(pair.first), near.push_back(pair.second);
     test_free_flight(std::move(near));
     met_.assign(pairs_.size(), 0);
-    parallel_for_blocks(pairs_.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n) met_[n] = do_meet(pairs_[n]) ? 1 : 0;
-    });
+    parallel_for(pairs_.size(), kParticleBlock, [&](std::size_t n) { met_[n] = do_meet(pairs_[n]) ? 1 : 0; });
 }
 
 /// Marks free spheres that fly onto bound spheres as bound, because they will be deflected, and declares the boxes that
@@ -128,12 +126,10 @@ bool PairPlans::is_resting_on(std::uint32_t above, std::uint32_t below) const {
 
 /// Declares the paths and boxes that need no test by test_free_flight().
 void PairPlans::declare() {
-    parallel_for_blocks(boxes_.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n) {
-            const auto k = static_cast<std::uint32_t>(n);
-            if (alone_.is_known_free(k)) freedom_[k] = Freedom::free;
-            boxes_[k] = is_free(k) ? alone_.box_of_free(k) : alone_.reachable_box(k);
-        }
+    parallel_for(boxes_.size(), kParticleBlock, [&](std::size_t n) {
+        const auto k = static_cast<std::uint32_t>(n);
+        if (alone_.is_known_free(k)) freedom_[k] = Freedom::free;
+        boxes_[k] = is_free(k) ? alone_.box_of_free(k) : alone_.reachable_box(k);
     });
 }
 

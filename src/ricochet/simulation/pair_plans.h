@@ -67,8 +67,7 @@ public:
     /// Returns true if a sphere flies freely. test_free_flight() must have tested it, as all spheres of pairs().
     [[nodiscard]] bool is_free(std::uint32_t k) const { return freedom_[k] == Freedom::free; }
     [[nodiscard]] const Box3& box(std::uint32_t k) const { return boxes_[k]; }
-    /// Returns true if a member's path meets a sphere of another island that stays within its declared bounds. The
-    /// sphere must have been tested by test_free_flight().
+    /// Returns true if a member's path meets a tested sphere of another island that stays within its bounds.
     [[nodiscard]] bool comes_to(const IslandMember& member, std::uint32_t k) const;
 
     /// Returns all free spheres that rest on spheres of `base`, directly or through other spheres, if the base keeps

@@ -59,14 +59,6 @@ void ParticleStore::compact(const std::vector<std::uint8_t>& keep) {
     particles_.compact(keep);
 }
 
-std::span<SideMemory> ParticleStore::sides_of(std::size_t i) {
-    return std::span(sides_).subspan(i * colliders_, colliders_);
-}
-
-std::span<const SideMemory> ParticleStore::sides_of(std::size_t i) const {
-    return std::span(sides_).subspan(i * colliders_, colliders_);
-}
-
 MovingParticle ParticleStore::load(std::size_t i, double start, bool in_contact) {
     MovingParticle particle{force_input(i, start), particles_.spin[i], particles_.id[i], particles_.draws[i], {}};
     if (cores_.has(i)) {

@@ -41,8 +41,12 @@ public:
     [[nodiscard]] const OverlapCores& cores() const { return cores_; }
     [[nodiscard]] OverlapCores& cores() { return cores_; }
 
-    [[nodiscard]] std::span<SideMemory> sides_of(std::size_t i);
-    [[nodiscard]] std::span<const SideMemory> sides_of(std::size_t i) const;
+    [[nodiscard]] std::span<SideMemory> sides_of(std::size_t i) {
+        return std::span(sides_).subspan(i * colliders_, colliders_);
+    }
+    [[nodiscard]] std::span<const SideMemory> sides_of(std::size_t i) const {
+        return std::span(sides_).subspan(i * colliders_, colliders_);
+    }
     /// Returns the sides of all particles from `first` on, one after the other.
     [[nodiscard]] std::span<const SideMemory> sides_from(std::size_t first) const {
         return std::span(sides_).subspan(first * colliders_);

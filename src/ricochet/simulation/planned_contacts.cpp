@@ -1,7 +1,6 @@
 #include "ricochet/simulation/planned_contacts.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "ricochet/collision/contact_query.h"
 #include "ricochet/core/parallel.h"
@@ -18,6 +17,12 @@ constexpr double kRollingShare = 2.0 / 7.0;
 
 /// Displacement by a linearly growing force, divided by final acceleration and squared step. A mathematical constant.
 constexpr double kLedBy = 1.0 / 6.0;
+
+std::optional<Contact> contact_along(const CollisionWorld& world, const Path& path, double radius) {
+    thread_local ContactScratch scratch;
+    const SurfaceGeometry geometry(world, scratch.plane_cache);
+    return find_first_contact(geometry, {path, radius}, scratch).contact;
+}
 
 }  // namespace
 
@@ -37,20 +42,15 @@ std::vector<SupportConstraints> PlannedContacts::find(const ParticleSystem& syst
     std::vector<SupportConstraints> result(system.size());
     double fastest = 0.0;
     for (const Vec3& v : velocities) fastest = std::max(fastest, max_abs(v));
-    parallel_for_blocks(system.size(), kPlannedContactsBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        thread_local ContactScratch scratch;
-        for (std::size_t k = begin; k < end; ++k) {
-            const Vec3& from = system.positions()[k];
-            const Path path = line_path(from, velocities[k], duration);
-            if (system.is_pinned(k) || !is_finite(path.end) || max_abs(path.end) > kLargestCoordinate) continue;
-            const double radius = system.input(k, 0.0, from, {}).radius;
-            const SurfaceGeometry geometry(world_, scratch.plane_cache);
-            const auto contact = find_first_contact(geometry, {path, radius}, scratch).contact;
-            if (contact)
-                result[k] = find_supports(
-                    {system.velocities()[k], velocities[k], spins[k], radius, duration, least_compliance * fastest},
-                    *contact);
-        }
+    parallel_for(system.size(), kPlannedContactsBlock, [&](std::size_t k) {
+        const Vec3& from = system.positions()[k];
+        const Path path = line_path(from, velocities[k], duration);
+        if (system.is_pinned(k) || !is_finite(path.end) || max_abs(path.end) > kLargestCoordinate) return;
+        const double radius = system.input(k, 0.0, from, {}).radius;
+        const auto contact = contact_along(world_, path, radius);
+        if (!contact) return;
+        const Flown flown{system.velocities()[k], velocities[k], spins[k], radius, duration, least_compliance * fastest};
+        result[k] = find_supports(flown, *contact);
     });
     return result;
 }
@@ -58,28 +58,21 @@ std::vector<SupportConstraints> PlannedContacts::find(const ParticleSystem& syst
 std::vector<Vec3> PlannedContacts::find_curvature_deviations(const ParticleSystem& system, const SystemStep& step,
                                                              std::span<const SupportConstraints> supports) const {
     std::vector<Vec3> result(system.size());
-    parallel_for_blocks(system.size(), kPlannedContactsBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        thread_local ContactScratch scratch;
-        for (std::size_t k = begin; k < end; ++k) {
-            if (supports[k].count != 1) continue;
-            const Vec3& n = supports[k].directions[0];
-            const Vec3& at = step.positions[k];
-            const double pressing = dot(step.velocities[k] - step.free_velocities[k], n);  // m/s
-            const double reach = step.duration * length(supports[k].across(step.velocities[k]));
-            const Vec3 turned_over = (-pressing * step.duration * kLedBy) * n;
-            result[k] = turned_over;
-            if (!(reach > 2.0 * contact_offset(at))) {
-                result[k] = {};
-                continue;
-            }
-            const double radius = system.input(k, 0.0, at, {}).radius;
-            const Path path = line_path(at + reach * n, -2.0 * reach * n, 1.0);
-            const SurfaceGeometry geometry(world_, scratch.plane_cache);
-            const auto contact = find_first_contact(geometry, {path, radius}, scratch).contact;
-            if (!contact) continue;
-            const Vec3& turned = contact->first().normal;
-            result[k] = path.position(contact->time) - at + turned_over - dot(turned_over, turned) * turned;
-        }
+    parallel_for(system.size(), kPlannedContactsBlock, [&](std::size_t k) {
+        if (supports[k].count != 1) return;
+        const Vec3& n = supports[k].directions[0];
+        const Vec3& at = step.positions[k];
+        const double pressing = dot(step.velocities[k] - step.free_velocities[k], n);  // m/s
+        const double reach = step.duration * length(supports[k].across(step.velocities[k]));
+        if (!(reach > 2.0 * contact_offset(at))) return;
+        const Vec3 turned_over = (-pressing * step.duration * kLedBy) * n;
+        result[k] = turned_over;
+        const double radius = system.input(k, 0.0, at, {}).radius;
+        const Path path = line_path(at + reach * n, -2.0 * reach * n, 1.0);
+        const auto contact = contact_along(world_, path, radius);
+        if (!contact) return;
+        const Vec3& turned = contact->first().normal;
+        result[k] = path.position(contact->time) - at + turned_over - dot(turned_over, turned) * turned;
     });
     return result;
 }

@@ -40,8 +40,7 @@ bool starts_on_surface(const CollisionScene& scene, const Particle& particle) {
     return find_first_contact(geometry, {path, 0.0}, scratch).near.starts_in_overlap();
 }
 
-/// Returns the contact of a particle with the surfaces of one frame. position: position of the particle in this frame.
-/// Returns nothing if the particle touches no surface.
+/// Returns a particle's contact with the surfaces of a frame, at a position in it; nothing if it touches none.
 std::optional<ContactState> contact_in(const CollisionScene& scene, const CollisionWorld& of_frame,
                                        const Particle& particle, const Vec3& position) {
     ContactState contact;
@@ -105,7 +104,8 @@ void Population::add(std::span<Particle* const> added, const std::function<void(
     for (const Particle* const particle : added) parts_.scene.prepare_radius(particle->radius);
     for (std::size_t first = 0; first < added.size(); first += kArrivals) {
         const auto part = added.subspan(first, std::min(kArrivals, added.size() - first));
-        const std::vector<Arrival> arrivals = examine(part);
+        std::vector<Arrival> arrivals(part.size());
+        parallel_for(part.size(), kArrivalBlock, [&](std::size_t k) { arrivals[k] = arrival_of(*part[k]); });
         for (std::size_t k = 0; k < part.size(); ++k) {
             insert(std::move(*part[k]), arrivals[k]);
             if (after) after(first + k);
@@ -113,15 +113,7 @@ void Population::add(std::span<Particle* const> added, const std::function<void(
     }
 }
 
-/// Tests particles on all threads. Moves particles off the surfaces of moving colliders on which they lie.
-std::vector<Population::Arrival> Population::examine(std::span<Particle* const> added) const {
-    std::vector<Arrival> arrivals(added.size());
-    parallel_for_blocks(arrivals.size(), kArrivalBlock, [&](std::size_t /*block*/, std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) arrivals[k] = arrival_of(*added[k]);
-    });
-    return arrivals;
-}
-
+/// Tests a particle. Moves it off the surfaces of moving colliders on which it lies.
 Population::Arrival Population::arrival_of(Particle& particle) const {
     Arrival arrival;
     if (!parts_.scene.moving().empty() && is_in_range(particle.position)) {

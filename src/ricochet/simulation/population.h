@@ -38,13 +38,13 @@ public:
     [[nodiscard]] std::size_t size() const { return store_.size(); }
     [[nodiscard]] QuerySchedule& schedule() { return schedule_; }
     [[nodiscard]] ParticleMemory& memory() { return memory_; }
+    [[nodiscard]] const PopulationParts& parts() const { return parts_; }
 
     // Changes of the number of particles.
 
     /// Reserves memory for `more` particles.
     void reserve(std::size_t more);
-    /// Adds particles with their ids, in ascending order of ids. All threads test the particles. after: called after
-    /// each particle has been added, with the particle's index in `added`.
+    /// Adds particles in ascending order of ids. after: called after each, with its index in `added`.
     void add(std::span<Particle* const> added, const std::function<void(std::size_t)>& after = {});
     /// Keeps the particles whose flag is not 0.
     void compact(const std::vector<std::uint8_t>& keep);
@@ -70,7 +70,6 @@ public:
 private:
     struct Arrival;
 
-    [[nodiscard]] std::vector<Arrival> examine(std::span<Particle* const> added) const;
     [[nodiscard]] Arrival arrival_of(Particle& particle) const;
     void insert(Particle&& particle, const Arrival& arrival);
 

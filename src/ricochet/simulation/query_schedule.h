@@ -22,8 +22,7 @@ struct TimeSpan {
     double end = 0.0;
 };
 
-/// Clock with equal steps from 0 to the end of the run. The last step ends there. It can be shorter than the others,
-/// or longer by less than the fraction kStepRounding.
+/// Clock with equal steps from 0 to the end of the run, except a last step that ends there (kStepRounding).
 class StepClock {
 public:
     /// time_step > 0, duration >= 0, both finite, in s.

@@ -41,8 +41,8 @@ public:
     static constexpr double kMostBusy = 1.1;
     /// Least work above the mean that is worth communication: 0.1 ms. Local: only the cost depends on it.
     static constexpr double kLeastExcess = 1e4;
-    /// Cost of inserting transferred particles into a rank, as work per particle of the rank. A smaller excess of work
-    /// waits for more checks. Local, because only the cost depends on it.
+    /// Work per particle of inserting transfers into a rank. A smaller excess waits. Local: only the cost depends on
+    /// it.
     static constexpr double kMoveWork = 30.0;
 
     void note(const WorkCounts& counts) { work_ += counts.work(); }
@@ -66,8 +66,7 @@ private:
     RankBalance balance_;
 };
 
-/// Returns the transfers of a rank. The transfers of all ranks together give each rank the mean work. Ranks with too
-/// much work give to ranks with too little work, both in ascending order.
+/// Returns the transfers from a rank. Ranks above the mean work give to ranks below it, both in ascending order.
 [[nodiscard]] RankTransfers transfers_of(std::size_t rank, const std::vector<std::uint64_t>& work);
 
 /// Selects for each particle the rank to which it moves, or kStays. The same fraction of particles leaves from each

@@ -51,8 +51,8 @@ public:
     [[nodiscard]] bool stays(std::uint64_t id) const {
         return !together_.empty() && std::binary_search(together_.begin(), together_.end(), id);
     }
-    /// Returns true if a particle with this id lives on this rank. The result is not valid for children. A birth is
-    /// tested with the id that it gets if no earlier birth of the step is refused.
+    /// Returns true if a particle with this id lives on this rank. Not valid for children. A birth is tested with the
+    /// id that it gets if no earlier birth of the step is refused.
     [[nodiscard]] bool has_place_for(std::uint64_t id) const {
         if (is_alone()) return true;
         if (stays(id)) return is_first();
@@ -122,14 +122,6 @@ template <class Archived>
     return bytes;
 }
 
-/// Returns the lists of all ranks, one after the other, on the first rank. T must be trivially copyable.
-template <class T>
-[[nodiscard]] std::vector<T> gather_list(Ranks& ranks, const std::vector<T>& list);
-
-/// Returns the lists of all ranks, one after the other, on each rank.
-template <class T>
-[[nodiscard]] std::vector<T> gather_list_to_all(Ranks& ranks, const std::vector<T>& list);
-
 /// Returns the values of lists that are given as bytes, one list after the other.
 template <class T>
 [[nodiscard]] std::vector<T> joined_list(const std::vector<std::vector<std::byte>>& parts) {
@@ -143,13 +135,15 @@ template <class T>
     return all;
 }
 
+/// Returns the lists of all ranks, one after the other, on the first rank. T must be trivially copyable.
 template <class T>
-std::vector<T> gather_list(Ranks& ranks, const std::vector<T>& list) {
+[[nodiscard]] std::vector<T> gather_list(Ranks& ranks, const std::vector<T>& list) {
     return joined_list<T>(ranks.gather(std::as_bytes(std::span(list))));
 }
 
+/// Returns the lists of all ranks, one after the other, on each rank.
 template <class T>
-std::vector<T> gather_list_to_all(Ranks& ranks, const std::vector<T>& list) {
+[[nodiscard]] std::vector<T> gather_list_to_all(Ranks& ranks, const std::vector<T>& list) {
     return joined_list<T>(ranks.gather_to_all(std::as_bytes(std::span(list))));
 }
 

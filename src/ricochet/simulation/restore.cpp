@@ -10,21 +10,10 @@
 
 namespace ricochet {
 
-StateParts Simulation::Impl::state() {
-    return {options,
-            clock,
-            scene,
-            modules,
-            recorder,
-            population,
-            emission.emitters().size(),
-            coupled().springs().springs().size()};
-}
-
 /// Reads a whole state, or throws.
 void Simulation::Impl::restore(const ByteSource& source) {
     population.flights().drop_deferred();
-    read_state(state(), source);
+    read_state(parts(), modules, source);
     population.forget_queries();
     population.bind();
 }
@@ -34,11 +23,11 @@ void Simulation::save(const ByteSink& sink) const {
     if (!impl().control.is_between_steps()) {
         throw RunError("save: the last step or restore() of this simulation has ended with an error");
     }
-    save_state(impl().state(), sink);
+    save_state(impl().parts(), impl().modules, sink);
 }
 
 // Wakes particles that slept in the saved run, if particles may not sleep in this run. Before that, adds the weights
-// with which these particles have pressed on their supports until now.
+// with which they have pressed on their supports until now.
 void Simulation::Impl::wake_all_sleepers() {
     ParticleStore& store = population.store();
     if (store.may_sleep()) return;
@@ -96,7 +85,7 @@ void Simulation::restore_particles(const ByteSource& source) {
         for (const std::uint64_t id : ids) keep.push_back(impl().share.has_place_for(id) ? 1 : 0);
         part.compact(keep);
         population.merge({archived_bytes(part)});
-        require_sound_state(impl().state());
+        require_sound_state(impl().parts(), impl().modules);
         impl().share.add_births(keep.size());
         impl().wake_all_sleepers();
     });

@@ -28,10 +28,21 @@ void Retirement::retire(double time) {
 }
 
 Retirement::Counts Retirement::count(double time) const {
+    const Particles& particles = population_.particles();
+    const QuerySchedule& schedule = population_.schedule();
     const std::size_t size = population_.size();
     std::vector<Counts> blocks(blocks_of(size));
     parallel_for_blocks(size, kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        blocks[block] = count_block(begin, end, time);
+        Counts& counts = blocks[block];
+        for (std::size_t i = begin; bounds_ && i < end; ++i) {
+            counts.leaving += schedule.is_in_free_flight(i) && is_outside(i) ? 1 : 0;
+        }
+        schedule.visit_all_but_free_flights(begin, end, [&](std::size_t i) {
+            const bool leaves = removal_reason(i, time) != nullptr;
+            counts.leaving += leaves ? 1 : 0;
+            counts.resting += leaves ? 0 : particles.resting[i];
+            counts.held += leaves ? 0 : particles.held[i];
+        });
     });
     Counts all;
     for (const Counts& block : blocks) {
@@ -40,22 +51,6 @@ Retirement::Counts Retirement::count(double time) const {
         all.held += block.held;
     }
     return all;
-}
-
-Retirement::Counts Retirement::count_block(std::size_t begin, std::size_t end, double time) const {
-    const Particles& particles = population_.particles();
-    const QuerySchedule& schedule = population_.schedule();
-    Counts counts;
-    for (std::size_t i = begin; bounds_ && i < end; ++i) {
-        counts.leaving += schedule.is_in_free_flight(i) && is_outside(i) ? 1 : 0;
-    }
-    schedule.visit_all_but_free_flights(begin, end, [&](std::size_t i) {
-        const bool leaves = removal_reason(i, time) != nullptr;
-        counts.leaving += leaves ? 1 : 0;
-        counts.resting += leaves ? 0 : particles.resting[i];
-        counts.held += leaves ? 0 : particles.held[i];
-    });
-    return counts;
 }
 
 void Retirement::remove_leavers(double time) {

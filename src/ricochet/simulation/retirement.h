@@ -40,7 +40,6 @@ private:
         return bounds_ && !bounds_->contains(population_.particles().position[i]);
     }
     [[nodiscard]] Counts count(double time) const;
-    [[nodiscard]] Counts count_block(std::size_t begin, std::size_t end, double time) const;
     void remove_leavers(double time);
 
     std::optional<Box3> bounds_;

@@ -103,8 +103,18 @@ void RunRecorder::record(const std::vector<BlockRecord>& blocks) {
         generation_contacts_.insert(generation_contacts_.end(), block.contact_records.begin(),
                                     block.contact_records.end());
     }
-    record_cut_off(blocks);
-    record_violations(blocks);
+    const std::vector<CutOff> cut_off = in_order_of_particles(blocks, &BlockRecord::cut_off);
+    for (const CutOff& entry : cut_off) statistics_.unsimulated_time += entry.time;
+    statistics_.budget_exhausted += cut_off.size();
+    // Pinched particles do not count, because more bounces would not help them.
+    for (const BlockRecord& block : blocks) statistics_.budget_exhausted -= block.counts.squeezed;
+    const std::vector<Violation> found = in_order_of_particles(blocks, &BlockRecord::violations);
+    const auto of_energy = static_cast<std::uint64_t>(std::count_if(found.begin(), found.end(), [](const Violation& v) {
+        return v.kind == ViolationKind::energy || v.kind == ViolationKind::rebound;
+    }));
+    statistics_.energy_violations += of_energy;
+    statistics_.violations += found.size() - of_energy;
+    list(found);
 }
 
 void add_load(std::vector<ColliderTotals>& totals, const ColliderLoad& load, const ColliderList& colliders) {
@@ -117,24 +127,6 @@ void add_load(std::vector<ColliderTotals>& totals, const ColliderLoad& load, con
 
 void RunRecorder::add_loads(std::span<const ColliderLoad> loads, const ColliderList& colliders) {
     for (const ColliderLoad& load : loads) add_load(loads_, load, colliders);
-}
-
-void RunRecorder::record_cut_off(const std::vector<BlockRecord>& blocks) {
-    const std::vector<CutOff> all = in_order_of_particles(blocks, &BlockRecord::cut_off);
-    for (const CutOff& entry : all) statistics_.unsimulated_time += entry.time;
-    statistics_.budget_exhausted += all.size();
-    // Pinched particles do not count, because more bounces would not help them.
-    for (const BlockRecord& block : blocks) statistics_.budget_exhausted -= block.counts.squeezed;
-}
-
-void RunRecorder::record_violations(const std::vector<BlockRecord>& blocks) {
-    const std::vector<Violation> found = in_order_of_particles(blocks, &BlockRecord::violations);
-    const auto of_energy = static_cast<std::uint64_t>(std::count_if(found.begin(), found.end(), [](const Violation& v) {
-        return v.kind == ViolationKind::energy || v.kind == ViolationKind::rebound;
-    }));
-    statistics_.energy_violations += of_energy;
-    statistics_.violations += found.size() - of_energy;
-    list(found);
 }
 
 void RunRecorder::add_violations(const std::vector<Violation>& found) {
@@ -291,13 +283,9 @@ std::vector<Violation> RunCheck::check_spheres(const Particles& particles, const
 void RunCheck::restart(const ParticleStore& store, double now) {
     const Particles& particles = store.particles();
     watched_.assign(particles.size(), std::nullopt);
-    parallel_for_blocks(particles.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            VerifiedParticle watched =
-                verifier_.watch(particles.position[i], particles.radius[i], store.stored_time(i, now));
-            watched.checked_until = now;
-            watched_[i] = std::move(watched);
-        }
+    parallel_for(particles.size(), kBlock, [&](std::size_t i) {
+        watched_[i] = verifier_.watch(particles.position[i], particles.radius[i], store.stored_time(i, now));
+        watched_[i]->checked_until = now;
     });
 }
 

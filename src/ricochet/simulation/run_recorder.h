@@ -152,8 +152,7 @@ void add_load(std::vector<ColliderTotals>& totals, const ColliderLoad& load, con
 /// Returns the first particle of all blocks that has exceeded kMaxSpeed.
 [[nodiscard]] std::optional<Runaway> first_runaway(const std::vector<BlockRecord>& blocks);
 
-/// Results of a run, except the particles. They are the same for any number of threads, because blocks are added in
-/// their order, and terms of particles in the order of particles.
+/// Results of a run, except the particles; the same for any number of threads, in the order of blocks and particles.
 class RunRecorder {
 public:
     /// surfaces: number of surfaces with totals. colliders: number of colliders with loads; 0 if no collider and no
@@ -205,8 +204,6 @@ public:
     void add_loads(std::span<const ColliderLoad> loads, const ColliderList& colliders);
 
 private:
-    void record_cut_off(const std::vector<BlockRecord>& blocks);
-    void record_violations(const std::vector<BlockRecord>& blocks);
     void list(const std::vector<Violation>& found);
 
     SimulationStatistics statistics_;
@@ -237,8 +234,7 @@ public:
     /// new particle is watched from its first check on. Before, other impacts in the step can still change the path of
     /// a dynamic body at the time of the birth.
     void add_spawned(std::size_t particles);
-    /// Checks the motion of particle i up to the given times. `particles` still contains the state of particle i before
-    /// the motion. Several threads may check different particles.
+    /// Checks the motion of particle i, on any thread, from its state in `particles` up to the given times.
     void check(std::size_t i, const Particles& particles, const ForceInput& moved, const StepTimes& times,
                std::span<const Segment> segments, std::vector<Violation>& violations, const RecordedParts& motion = {});
     /// Appends violations for impacts of a particle whose rebound does not match the surfaces that were hit.

@@ -57,12 +57,10 @@ Simulation::Impl::Impl(SimulationSetup& setup, double particle_bytes)
       recorder(make_recorder(setup, scene)),
       population(make_store(setup, scene, *response), setup.acceleration, particle_bytes,
                  {options, scene, *response, clock, recorder, modules}),
-      emission(setup, population, {options, scene, *response, clock, recorder, modules}, share),
+      emission(setup, population, share),
       mover({population.store(), population.schedule(), recorder, modules.observers()}, *response) {
     scene.set_culling(setup.acceleration.culling);
-    add_modules(modules, setup,
-                {options, warnings, clock, share, scene, *response, recorder, population, emission.emitters(), mover,
-                 modules.observers()});
+    add_modules(modules, setup, parts());
     scene.begin_step({0.0, options.time_step});
     emission.add_first(setup.particles);
     warnings.add_overlaps(scene, particles(), options.particle_contacts.has_value(), recorder.statistics());

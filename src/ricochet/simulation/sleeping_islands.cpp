@@ -17,11 +17,9 @@ constexpr auto by_particle = [](const auto& a, const auto& b) { return a.particl
 /// Returns the entries of a sorted list that belong to a particle.
 template <class List>
 auto range_of(List& list, std::uint64_t particle) {
-    const auto begin = std::lower_bound(list.begin(), list.end(), particle,
-                                        [](const auto& entry, std::uint64_t id) { return entry.particle < id; });
-    auto end = begin;
-    while (end != list.end() && end->particle == particle) ++end;
-    return std::pair{begin, end};
+    typename List::value_type key;
+    key.particle = particle;
+    return std::equal_range(list.begin(), list.end(), key, by_particle);
 }
 
 }  // namespace
@@ -95,16 +93,15 @@ void SleepingIslands::add(const std::vector<std::uint64_t>& particles,
 
 /// Joins islands by disjoint sets of sleepers. The root of a set has the lowest island number.
 void SleepingIslands::join(const std::vector<ContactKey>& touching) {
-    const auto slot_of = [&](const Sleeper* sleeper) { return static_cast<std::uint32_t>(sleeper - sleepers_.data()); };
     DisjointSets sets(sleepers_.size());
     for (std::uint32_t i = 0; i < sets.size(); ++i) {
         const Sleeper* const first = find(sleepers_[i].sleeping_island);
-        if (first != nullptr) sets.join(i, slot_of(first));
+        if (first != nullptr) sets.join(i, slot_of(*first));
     }
     for (const ContactKey& pair : touching) {
         const Sleeper* const a = pair.is_wall() ? nullptr : find(pair.particle);
         const Sleeper* const b = pair.is_wall() ? nullptr : find(pair.other);
-        if (a != nullptr && b != nullptr) sets.join(slot_of(a), slot_of(b));
+        if (a != nullptr && b != nullptr) sets.join(slot_of(*a), slot_of(*b));
     }
     // Visits sleepers in ascending order, so that a root gets its number before the other sleepers of its set.
     for (std::uint32_t i = 0; i < sets.size(); ++i)

@@ -34,15 +34,13 @@ public:
     [[nodiscard]] std::vector<std::uint64_t> particles() const;
     /// Returns a number that changes whenever the set of sleepers changes.
     [[nodiscard]] std::uint64_t version() const { return version_; }
-    /// Returns the number of a sleeper's island. This number is the lowest particle id at the time when the island was
-    /// joined. The island remains one island even if spheres in its middle wake.
+    /// Returns the number of a sleeper's island: its lowest particle id when it was joined. It remains one island even
+    /// if spheres in its middle wake.
     [[nodiscard]] std::uint64_t number_of(std::uint64_t sleeper) const { return find(sleeper)->sleeping_island; }
     /// Returns the largest impulse, in N s per step, of a contact on a sleeper when it fell asleep.
     [[nodiscard]] double load_of(std::uint64_t sleeper) const { return find(sleeper)->load; }
     /// Returns the forces of sleepers on surfaces, ascending by particle.
     [[nodiscard]] const std::vector<Weight>& weights() const { return weights_; }
-    /// Returns the contacts of sleepers, in the state in which the sleepers fell asleep.
-    [[nodiscard]] const WarmStartMemory& contacts() const { return contacts_; }
     /// Returns the contacts of sleepers with awake spheres, ascending. A step needs to examine only these contacts.
     [[nodiscard]] const std::vector<WarmStartMemory::Entry>& edge_contacts() const { return edge_contacts_; }
 
@@ -60,8 +58,7 @@ public:
     [[nodiscard]] std::vector<std::uint64_t> islands_of_sleepers(const std::vector<std::uint64_t>& sleepers) const;
     /// Returns the sleepers among the given particles, and those within `contacts` contacts of them. Ascending.
     [[nodiscard]] std::vector<std::uint64_t> around(const std::vector<std::uint64_t>& particles, int contacts) const;
-    /// Returns the sleepers without a load path to a sleeper in `held`, except the sleepers in `held` themselves. A
-    /// load path is a row of contacts under load. Ascending.
+    /// Returns the sleepers, except `held`, without a row of contacts under load to one in `held`. Ascending.
     [[nodiscard]] std::vector<std::uint64_t> not_joined_to(const std::vector<std::uint64_t>& held) const;
     /// Wakes sleepers, ascending ids. Returns their contacts, in the state in which they fell asleep.
     [[nodiscard]] std::vector<WarmStartMemory::Entry> wake(const std::vector<std::uint64_t>& woken);
@@ -125,7 +122,7 @@ private:
     std::unordered_map<std::uint64_t, std::uint32_t> slots_;  // index in sleepers_ by particle
     std::vector<SleepCounter> sleep_counters_;
     std::vector<Weight> weights_;
-    WarmStartMemory contacts_;
+    WarmStartMemory contacts_;                                // of sleepers, in the state in which they fell asleep
     std::vector<Ends> ends_;  // of each contact
     std::vector<WarmStartMemory::Entry> edge_contacts_;
     std::vector<Neighbour> neighbours_;  // particles in contact with sleepers, sleeper by sleeper

@@ -27,12 +27,18 @@ constexpr double kClosestPacking = 4.0;
 /// Number of decimal digits that distinguishes any two different doubles.
 constexpr int kMostDigits = 17;
 
-/// Returns true if methods that kick first are allowed. They are not allowed for colliding spheres among moving
-/// colliders, because they would kick the spheres twice.
+/// Returns true if methods that kick first are allowed. They would kick colliding spheres among moving colliders twice.
 bool may_kick_first(const SimulationSetup& setup) {
     return !setup.options.particle_contacts ||
            std::none_of(setup.colliders.begin(), setup.colliders.end(),
                         [](const ColliderDescription& c) { return !c.frame.empty() || is_deforming(c); });
+}
+
+bool acts_on_all(const ParticlesForceEntry& entry) { return entry.particles.empty() && entry.emitters.empty(); }
+
+bool acts_on_emitter(const ParticlesForceEntry& entry, std::size_t emitter) {
+    const auto& emitters = entry.emitters;
+    return acts_on_all(entry) || std::find(emitters.begin(), emitters.end(), emitter) != emitters.end();
 }
 
 /// The two smallest masses of the particles between which a force acts, in kg; infinite if pinned or missing.
@@ -51,19 +57,17 @@ struct LightestPair {
 
 /// Returns the two smallest masses of a force's particles, without fragments, whose masses are not known yet.
 LightestPair lightest_of(const SimulationSetup& setup, const ParticlesForceEntry& entry) {
-    const bool is_all = entry.particles.empty() && entry.emitters.empty();
     LightestPair lightest;
     const auto add = [&](const Particle& particle) {
         lightest.add(particle.pinned ? std::numeric_limits<double>::infinity() : particle.mass);
     };
-    if (is_all) std::for_each(setup.particles.begin(), setup.particles.end(), add);
+    if (acts_on_all(entry)) std::for_each(setup.particles.begin(), setup.particles.end(), add);
     for (const std::uint64_t id : entry.particles) {
         if (id < setup.particles.size()) add(setup.particles[id]);
     }
     for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
         const EmitterDescription& emitter = setup.emitters[k];
-        const bool takes_part = std::find(entry.emitters.begin(), entry.emitters.end(), k) != entry.emitters.end();
-        if (!(is_all || takes_part) || (emitter.parent && emitter.parent->share)) continue;
+        if (!acts_on_emitter(entry, k) || (emitter.parent && emitter.parent->share)) continue;
         const double mass = emitter.mass.mean - emitter.mass.spread;
         lightest.add(mass);
         lightest.add(mass);
@@ -89,11 +93,9 @@ std::string too_long(const SimulationSetup& setup, double bound, const std::stri
 }
 
 std::string undamped(const SimulationSetup& setup, const std::string& forces, const char* whose) {
-    std::string others = may_kick_first(setup) ? "symplectic_euler or velocity_verlet" : "velocity_verlet";
-    if (may_be_implicit(setup)) {
-        others = may_kick_first(setup) ? "symplectic_euler, velocity_verlet or implicit_euler"
-                                       : "velocity_verlet or implicit_euler";
-    }
+    const bool is_implicit = may_be_implicit(setup);
+    std::string others = is_implicit ? "velocity_verlet or implicit_euler" : "velocity_verlet";
+    if (may_kick_first(setup)) others = (is_implicit ? "symplectic_euler, " : "symplectic_euler or ") + others;
     return fmt::format(
         "{} is not stable at any time step with {}: they may explode; give {} damping of more than the time step times "
         "its stiffness, or use the integrator {}",
@@ -190,8 +192,7 @@ std::vector<DraggedParticle> most_dragged_of(const EmitterDescription& emitter, 
         if (emitter.frames) particle = launched_from(*emitter.frames, emitter.frame, particle);
         const ForceInput state{particle.position, particle.velocity,   particle.mass,
                                particle.radius,   particle.birth_time, std::numeric_limits<std::uint64_t>::max()};
-        const std::string name = emitter.name.empty() ? fmt::format("emitters[{}]", number) : "'" + emitter.name + "'";
-        particles.push_back({state, "particles of " + name});
+        particles.push_back({state, "particles of " + named(emitter.name, "emitters", number)});
     }
     return particles;
 }
@@ -211,12 +212,6 @@ Vec3 falling_velocity(const std::vector<const Force*>& drags, const Vec3& pull, 
     std::vector<std::unique_ptr<Force>> forces;
     forces.push_back(make_acceleration(sum));
     return implicit_euler_velocity(ForceField(std::move(forces)), state, kManySteps * step);
-}
-
-double damping_of_all(const std::vector<const Force*>& drags, const ForceInput& state) {
-    double rate = 0.0;
-    for (const Force* const drag : drags) rate += damping_rate(*drag, state);
-    return rate;
 }
 
 /// The particle that drag damps fastest, at its initial velocity or the velocity of its fall.
@@ -250,7 +245,8 @@ private:
     }
     template <class Name>
     void compare(const ForceInput& state, const Name& name) {
-        const double rate = damping_of_all(drags_, state);
+        double rate = 0.0;
+        for (const Force* const drag : drags_) rate += damping_rate(*drag, state);
         if (rate <= rate_) return;
         rate_ = rate;
         particle_ = {state, name()};
@@ -297,17 +293,14 @@ std::vector<std::string> birth_warnings(const SimulationSetup& setup) {
     for (std::size_t k = 0; k < setup.particles_forces.size(); ++k) {
         const ParticlesForceEntry& entry = setup.particles_forces[k];
         if (!lacks_softening(*entry.force)) continue;
-        const bool is_all = entry.particles.empty() && entry.emitters.empty();
         for (std::size_t e = 0; e < setup.emitters.size(); ++e) {
             const EmitterDescription& emitter = setup.emitters[e];
-            const bool takes_part = std::find(entry.emitters.begin(), entry.emitters.end(), e) != entry.emitters.end();
-            if (!(is_all || takes_part) || !emitter.parent || !is_born_beside_others(*emitter.parent)) continue;
-            const std::string name = emitter.name.empty() ? fmt::format("emitters[{}]", e) : "'" + emitter.name + "'";
+            if (!acts_on_emitter(entry, e) || !emitter.parent || !is_born_beside_others(*emitter.parent)) continue;
             warnings.push_back(
                 fmt::format("children of {} begin where their parent is, in each other, and particle_forces[{}], which "
                             "has no softening, may throw them apart at any speed: give it a softening of about their "
                             "radius, or leave them out of it",
-                            name, k));
+                            named(emitter.name, "emitters", e), k));
         }
     }
     return warnings;

@@ -28,9 +28,7 @@ double least_restitution(const SimulationSetup& setup) {
     const auto use = [&](std::uint32_t material) {
         if (material < setup.materials.size()) least = std::min(least, setup.materials[material].restitution);
     };
-    for (const ColliderDescription& collider : setup.colliders) {
-        visit_materials(collider, use);
-    }
+    for (const ColliderDescription& collider : setup.colliders) visit_materials(collider, use);
     return least;
 }
 
@@ -53,10 +51,6 @@ std::vector<std::string> penalty_warnings(const SimulationSetup& setup) {
         fmt::format("the penalty sub-step of {:.3g} s exceeds the stability bound of {:.3g} s (stiffness {:.3g} N/m, "
                     "lightest particle {:.3g} kg, restitution {}): contacts may explode; {}",
                     substep, bound, spring.stiffness, mass, restitution, advice)};
-}
-
-std::string named(const ColliderDescription& collider, std::size_t number) {
-    return collider.name.empty() ? fmt::format("colliders[{}]", number) : fmt::format("'{}'", collider.name);
 }
 
 /// Returns a warning if spheres overlap surfaces.
@@ -83,7 +77,7 @@ std::optional<std::string> overlap_warning(const CollisionScene& scene, const Pa
         "{} {} born in overlap with a surface: the first is particle {}, {:.3g} m deep in {}; the deepest is {:.3g} m; "
         "they can leave and slide, but nothing pushes them out: place them a radius away",
         count, count == 1 ? "sphere is" : "spheres are", particles.id[first], first_depth,
-        named(scene.list().all()[collider], collider), deepest);
+        named(scene.list().all()[collider].name, "colliders", collider), deepest);
 }
 
 /// Returns a warning if spheres overlap each other. Counts these spheres. Spheres that only touch do not overlap.
@@ -122,6 +116,10 @@ std::optional<std::string> sphere_overlap_warning(const Particles& particles, st
 }
 
 }  // namespace
+
+std::string named(const std::string& name, const char* list, std::size_t number) {
+    return name.empty() ? fmt::format("{}[{}]", list, number) : fmt::format("'{}'", name);
+}
 
 StartWarnings::StartWarnings(const SimulationSetup& setup)
     : texts_(penalty_warnings(setup)), knows_implicit_(may_be_implicit(setup)) {

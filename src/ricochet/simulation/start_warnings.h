@@ -11,6 +11,9 @@
 
 namespace ricochet {
 
+/// Returns the name of an object in quotes, or without a name its number in a list of the scene.
+[[nodiscard]] std::string named(const std::string& name, const char* list, std::size_t number);
+
 /// Returns upper bounds of the oscillation rates of the setup's particles in their first step, for a force between
 /// pairs. Particles oscillate faster than later if they start nearer to each other than at rest. They also do so with
 /// more neighbours than in a packing. Bound: let k be the stiffness and n the unit vector of each pair. Each particle i
@@ -42,8 +45,8 @@ public:
     [[nodiscard]] const std::vector<std::string>& texts() const { return texts_; }
     /// Returns true if a message about diverging motion may suggest implicit_euler.
     [[nodiscard]] bool knows_implicit() const { return knows_implicit_; }
-    /// Adds warnings about particles of the setup that overlap surfaces. If spheres meet each other, also adds warnings
-    /// about spheres that overlap other spheres, and counts these spheres.
+    /// Adds warnings about particles that overlap surfaces. If spheres meet each other, also adds warnings about
+    /// spheres that overlap other spheres, and counts them.
     void add_overlaps(const CollisionScene& scene, const Particles& particles, bool do_spheres_meet,
                       SimulationStatistics& statistics);
 

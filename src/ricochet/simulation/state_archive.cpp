@@ -22,6 +22,12 @@ namespace {
 /// First number of every saved state. Its last digits change with the layout.
 constexpr std::uint64_t kStateFormat = 0x5249434f5354000dULL;
 
+/// Archives the number of entries of a list, which must be the same when reading.
+template <class Archive>
+void expect_count(Archive& a, const auto& list, const char* complaint) {
+    expect(a, static_cast<std::uint64_t>(list.size()), complaint);
+}
+
 /// Archives the statistics with their layout in memory, so that no counter can be forgotten. The padding after the only
 /// 32-bit counter is set to zero.
 template <class Archive>
@@ -55,7 +61,7 @@ void add_materials(StateHash& hash, const std::vector<Material>& materials) {
 }
 
 /// Hashes the settings on which results depend. The duration is not included, because results do not depend on it.
-std::uint64_t settings_hash(const StateParts& parts) {
+std::uint64_t settings_hash(const ModuleParts& parts, const ModuleList& modules) {
     const SimulationOptions& options = parts.options;
     StateHash hash;
     add_numbers(hash, options.integrator.kind);
@@ -69,33 +75,32 @@ std::uint64_t settings_hash(const StateParts& parts) {
                 options.most_particles);
     if (options.particle_contacts) add_contact_settings(hash, *options.particle_contacts);
     add_materials(hash, parts.scene.materials());
-    parts.modules.each([&](const Module& module) { module.add_to_fingerprint(hash); });
+    modules.each([&](const Module& module) { module.add_to_fingerprint(hash); });
     return hash.value();
 }
 
 template <class Archive>
-void archive(Archive& a, const StateParts& parts) {
+void archive(Archive& a, const ModuleParts& parts, const ModuleList& modules) {
     RunRecorder& recorder = parts.recorder;
     ParticleStore& store = parts.population.store();
     expect(a, kStateFormat, "not a state that this version can read");
     expect(a, parts.scene.hash(), "the state belongs to other colliders");
-    expect(a, settings_hash(parts), "the state belongs to other options, materials, bodies, bounds or counters");
-    expect(a, static_cast<std::uint64_t>(parts.emitters), "the state belongs to other emitters");
-    expect(a, static_cast<std::uint64_t>(parts.springs), "the state belongs to other springs");
-    expect(a, static_cast<std::uint64_t>(store.particles().attributes.columns().size()),
-           "the state belongs to other attributes");
-    expect(a, static_cast<std::uint64_t>(recorder.totals().size()), "the state belongs to another choice of totals");
+    expect(a, settings_hash(parts, modules), "the state belongs to other options, materials, bodies, bounds or counters");
+    expect_count(a, parts.emitters, "the state belongs to other emitters");
+    expect_count(a, parts.observers.coupled->springs().springs(), "the state belongs to other springs");
+    expect_count(a, store.particles().attributes.columns(), "the state belongs to other attributes");
+    expect_count(a, recorder.totals(), "the state belongs to another choice of totals");
     expect(a, parts.options.time_step, "the state belongs to another time step");
     archive_statistics(a, recorder.statistics());
     store.archive(a);
-    parts.modules.each([&](Module& module) { module.archive_particles(a); });
+    modules.each([&](Module& module) { module.archive_particles(a); });
     recorder.totals().archive(a);
     for (ColliderTotals& load : recorder.loads()) a(load.hits), a(load.impulse), a(load.moment), a(load.work);
-    parts.modules.each([&](Module& module) { module.archive(a); });
+    modules.each([&](Module& module) { module.archive(a); });
 }
 
 /// Returns the reason why no run can produce the restored state of particle i. Returns null for a valid state.
-const char* fault_of(const StateParts& parts, std::size_t i) {
+const char* fault_of(const ModuleParts& parts, const ModuleList& modules, std::size_t i) {
     const Particles& p = parts.population.particles();
     const MovingColliders& moving = parts.scene.moving();
     for (const SurfaceId surface : p.support[i]) {
@@ -112,7 +117,7 @@ const char* fault_of(const StateParts& parts, std::size_t i) {
         p.mass[i] > 0.0 && std::isfinite(p.mass[i]) && p.radius[i] >= 0.0 && p.radius[i] <= kLargestCoordinate;
     if (!is_body) return "a mass or radius out of range";
     const char* fault = nullptr;
-    parts.modules.each([&](const Module& module) { fault = fault != nullptr ? fault : module.fault_of(i); });
+    modules.each([&](const Module& module) { fault = fault != nullptr ? fault : module.fault_of(i); });
     if (fault != nullptr) return fault;
     const bool is_released = p.cascade_left[i] < 0.0 && p.cascade_left[i] != ContactState::kPlaced;
     if (is_released && moving.empty()) return "a particle released by a body, without bodies";
@@ -121,28 +126,28 @@ const char* fault_of(const StateParts& parts, std::size_t i) {
 
 }  // namespace
 
-void save_state(const StateParts& parts, const ByteSink& sink) {
+void save_state(const ModuleParts& parts, const ModuleList& modules, const ByteSink& sink) {
     StateHash checksum;
     BinaryWriter writer([&](std::span<const std::byte> bytes) {
         checksum.add(bytes);
         sink(bytes);
     });
-    archive(writer, parts);
+    archive(writer, parts, modules);
     writer(checksum.value());
 }
 
-void read_state(const StateParts& parts, const ByteSource& source) {
+void read_state(const ModuleParts& parts, const ModuleList& modules, const ByteSource& source) {
     StateHash checksum;
     BinaryReader reader([&](std::span<std::byte> bytes) {
         source(bytes);
         checksum.add(bytes);
     });
-    archive(reader, parts);
+    archive(reader, parts, modules);
     expect(reader, checksum.value(), "the state is damaged: its checksum is wrong");
-    require_sound_state(parts);
+    require_sound_state(parts, modules);
 }
 
-void require_sound_state(const StateParts& parts) {
+void require_sound_state(const ModuleParts& parts, const ModuleList& modules) {
     const Particles& p = parts.population.particles();
     const auto require_none = [](const char* fault) {
         if (fault != nullptr) throw InputError(fmt::format("the state is damaged: it has {}", fault));
@@ -152,11 +157,12 @@ void require_sound_state(const StateParts& parts) {
     require(std::adjacent_find(p.id.begin(), p.id.end(), std::greater_equal<>()) == p.id.end(),
             "particles out of the order of their ids");
     require(p.id.empty() || p.id.back() < parts.population.store().next_id(), "an id above the last one of the run");
-    for (std::size_t i = 0; i < p.size(); ++i) require_none(fault_of(parts, i));
+    for (std::size_t i = 0; i < p.size(); ++i) require_none(fault_of(parts, modules, i));
     const double now = parts.clock.time_at(parts.recorder.statistics().steps);
-    parts.modules.each([&](const Module& module) { require_none(module.fault(now)); });
+    modules.each([&](const Module& module) { require_none(module.fault(now)); });
     for (const Origin& origin : p.origin) {
-        require(origin.emitter == kNoEmitter || origin.emitter < parts.emitters, "a particle of an unknown emitter");
+        const bool is_known = origin.emitter == kNoEmitter || origin.emitter < parts.emitters.size();
+        require(is_known, "a particle of an unknown emitter");
     }
 }
 

@@ -2,13 +2,12 @@
 /// Private to the simulation: the saved state of a run.
 #pragma once
 
-#include <cstddef>
 #include <variant>
 
 #include "ricochet/core/byte_stream.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
-#include "ricochet/simulation/population.h"
+#include "ricochet/simulation/modules.h"
 
 namespace ricochet {
 
@@ -38,23 +37,11 @@ void add_settings(StateHash& hash, const auto& object, const auto& table) {
     for (const auto& line : table) std::visit(add, line.member);
 }
 
-/// Parts of a run whose state is saved, or which a restored state must match. emitters, springs: counts of the setup.
-struct StateParts {
-    const SimulationOptions& options;
-    const StepClock& clock;
-    const CollisionScene& scene;
-    const ModuleList& modules;
-    RunRecorder& recorder;
-    Population& population;
-    std::size_t emitters;
-    std::size_t springs;
-};
-
 /// Writes the state between two steps with a checksum.
-void save_state(const StateParts& parts, const ByteSink& sink);
+void save_state(const ModuleParts& parts, const ModuleList& modules, const ByteSink& sink);
 /// Reads a whole state. Throws InputError if it belongs to another setup or is damaged.
-void read_state(const StateParts& parts, const ByteSource& source);
+void read_state(const ModuleParts& parts, const ModuleList& modules, const ByteSource& source);
 /// Throws InputError if a restored state contains values that no run produces, such as indices out of range.
-void require_sound_state(const StateParts& parts);
+void require_sound_state(const ModuleParts& parts, const ModuleList& modules);
 
 }  // namespace ricochet

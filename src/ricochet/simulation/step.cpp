@@ -91,7 +91,7 @@ void Simulation::Impl::keep_return_point() {
     FreeFlights& flights = population.flights();
     const bool was_deferring = flights.is_deferring();
     flights.end_deferring();
-    control.return_point().keep([this](const ByteSink& sink) { save_state(state(), sink); },
+    control.return_point().keep([this](const ByteSink& sink) { save_state(parts(), modules, sink); },
                                 {emission.emitters(), recorder.violations()});
     if (was_deferring) flights.begin_deferring();
 }
@@ -120,8 +120,7 @@ void Simulation::advance(std::uint64_t count, const std::function<bool()>& go_on
                          const std::function<bool()>& goes_on_within) {
     FreeFlights& flights = impl().population.flights();
     if (count > 1 && impl().population.may_defer()) flights.begin_deferring();
-    // A step can be interrupted only if this rank runs alone. Ranks that share a run stop only at the end of a step,
-    // which is the same step for all ranks.
+    // Ranks that share a run stop only at the end of a step, all at the same one.
     const bool may_stop = goes_on_within && impl().share.is_alone();
     if (!may_stop) impl().control.return_point().invalidate();
     try {

@@ -85,8 +85,7 @@ void ContactReporter::require_idle() const {
 
 void ContactReporter::report(const std::vector<ContactRecord>& records) {
     if (!callback_ || records.empty()) return;
-    // Takes the function out of the member. The function can replace the member, and must not be destroyed while it
-    // runs.
+    // Takes the function out of the member, because the function may replace the member while it runs.
     ContactCallback running = take();
     is_reporting_ = true;
     is_replaced_ = false;

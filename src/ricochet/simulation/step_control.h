@@ -49,8 +49,7 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
-    /// Largest size of a saved state, in bytes: some hundred thousand particles. A larger state would count in
-    /// estimates of memory.
+    /// Largest size of a saved state, in bytes, some hundred thousand particles. More would count as memory.
     static constexpr std::size_t kMostBytes = std::size_t{1} << 24U;
     // Local, because only the cost depends on it.
     static constexpr double kShortestInterval = 0.25;  // s, between two saves
@@ -67,8 +66,8 @@ private:
     double seconds_ = 0.0;     // s, duration of these steps
 };
 
-/// Phase of a run: between two steps, within a step, or broken. After an error in a step, the run is broken, because
-/// particles in free flight may be one step ahead of the other particles.
+/// Phase of a run: between two steps, within a step, or broken. An error in a step breaks the run, because particles in
+/// free flight may be one step ahead of the others.
 class StepControl {
 public:
     /// Returns the stop token, which loops within a step must poll.
@@ -79,8 +78,7 @@ public:
     [[nodiscard]] bool is_between_steps() const { return phase_ == Phase::between_steps; }
     /// Throws RunError unless the run is between two steps.
     void require_between_steps() const;
-    /// Begins a change by the user. Calls require_between_steps(). Invalidates the return point, because the change is
-    /// not a step.
+    /// Begins a change by the user, which invalidates the return point. Throws like require_between_steps().
     void begin_change();
 
     /// Makes a step. Throws RunError in a broken run.

@@ -16,8 +16,7 @@ struct SupportList {
 
 double along(const SleepingIslands::Weight& weight, const Vec3& total) { return std::fabs(dot(weight.force, total)); }
 
-/// Returns the fraction of a load that a contact carries. Only forces along the load count, so a smooth vertical wall
-/// carries no weight.
+/// Returns the part of a load that a contact carries, by its force along the load, so smooth vertical walls carry none.
 double share_of(const SleepingIslands::Weight& weight, const Vec3& total, const SupportList& all) {
     return all.along > 0.0 ? along(weight, total) / all.along : length(weight.force) / all.strong;
 }
@@ -40,8 +39,7 @@ void TransmittedLoads::stop(std::span<const SleeperImpulse> stopped, const TimeS
     share_out_all({}, stopped);
 }
 
-/// Adds impulses to the loads, and distributes them. Different contacts carry the component along the weight and the
-/// component across it.
+/// Adds impulses to the loads, and distributes the components along and across the weight, to different contacts.
 void TransmittedLoads::share_out_all(Loads totals, std::span<const SleeperImpulse> impulses) {
     for (const auto& [particle, impulse] : impulses) totals[islands_.number_of(particle)] += impulse;
     Loads down;

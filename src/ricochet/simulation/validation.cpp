@@ -18,8 +18,8 @@
 namespace ricochet {
 namespace {
 
-/// Largest number of births of an emitter. Living particles have 32-bit indices. Particles retire, so more particles
-/// can be born than live at the same time. Local: a limit of input values.
+/// Largest number of births of an emitter. Particles retire, so more can be born than live at the same time with 32-bit
+/// indices. Local: a limit of input values.
 constexpr double kMostBirths = 1e12;
 
 void validate(const SimulationOptions& options) {
@@ -56,18 +56,13 @@ void validate(const Placement& placement, const Subject& subject) {
     subject.require(placement.scale, kCoordinate, "scale", "");
 }
 
-/// Refuses null pointers and indices past the end.
-void validate(const TriangleMesh* mesh, const Subject& subject) {
-    if (mesh == nullptr) subject.refuse("mesh", "a null pointer", "a mesh");
-    for (const Triangle& triangle : mesh->triangles) {
+void validate(const MeshShape& shape, const Subject& subject, std::size_t materials) {
+    if (!shape.mesh) subject.refuse("mesh", "a null pointer", "a mesh");
+    for (const Triangle& triangle : shape.mesh->triangles) {
         for (const std::uint32_t vertex : triangle) {
-            subject.require_index(vertex, mesh->vertices.size(), "corner of a triangle", "vertices");
+            subject.require_index(vertex, shape.mesh->vertices.size(), "corner of a triangle", "vertices");
         }
     }
-}
-
-void validate(const MeshShape& shape, const Subject& subject, std::size_t materials) {
-    validate(shape.mesh.get(), subject);
     validate(shape.placement, subject);
     if (shape.motion && shape.motion->vertex_count() != shape.mesh->vertices.size()) {
         subject.refuse("motion", fmt::format("{} vertices", shape.motion->vertex_count()),
@@ -102,8 +97,7 @@ void validate(const ColliderShape& shape, const Subject& subject, std::size_t ma
     }
 }
 
-/// Returns the largest number of particles that an emitter without parents can emit in a run. Particles of its rate per
-/// screen area are not included.
+/// Returns the largest number of births of an emitter without parent, without those per screen area.
 double most_births(const EmitterDescription& emitter, const SimulationOptions& options) {
     if (emitter.parent) return 0.0;
     const double rate = emitter.rate.mean + emitter.rate.spread +
@@ -176,6 +170,16 @@ void validate(const ReferenceCamera& camera) {
     subject.require(camera.image_height, kPositive, "image_height", "pixels");
 }
 
+/// Refuses equal names. Several empty names are allowed.
+template <class Named>
+void validate_names(const std::vector<Named>& all, std::string_view kind) {
+    std::set<std::string_view> taken;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        if (all[k].name.empty() || taken.insert(all[k].name).second) continue;
+        Subject(kind, k, all[k].name).refuse("name", all[k].name, "a name that no other has");
+    }
+}
+
 }  // namespace
 
 void validate(const Particle& particle, std::size_t number, std::size_t columns) {
@@ -199,20 +203,6 @@ void validate(const ColliderDescription& collider, std::size_t number, std::size
     subject.require_index(collider.material, materials, "material", "materials");
     validate(collider.shape, subject, materials);
 }
-
-namespace {
-
-/// Refuses equal names. Several empty names are allowed.
-template <class Named>
-void validate_names(const std::vector<Named>& all, std::string_view kind) {
-    std::set<std::string_view> taken;
-    for (std::size_t k = 0; k < all.size(); ++k) {
-        if (all[k].name.empty() || taken.insert(all[k].name).second) continue;
-        Subject(kind, k, all[k].name).refuse("name", all[k].name, "a name that no other has");
-    }
-}
-
-}  // namespace
 
 const SimulationSetup& validated(const SimulationSetup& setup) {
     validate(setup.options);

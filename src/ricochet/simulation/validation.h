@@ -5,11 +5,9 @@
 
 #include <concepts>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/setting.h"
@@ -49,8 +47,7 @@ private:
     std::string name_;
 };
 
-/// Checks all values of a setup that the classes of its parts do not check. Forces, emitters, springs and frames check
-/// their own values. Returns the setup.
+/// Checks all values of a setup that the classes of its parts do not check themselves. Returns the setup.
 const SimulationSetup& validated(const SimulationSetup& setup);
 
 /// Refuses parts that cannot be combined: moving colliders, bodies, spheres that meet, flows, forces between particles.

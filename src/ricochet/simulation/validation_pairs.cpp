@@ -17,8 +17,7 @@ namespace {
 /// Largest number of named materials. With more materials, the table of pairs in a scene would not be readable.
 constexpr std::size_t kMostMaterials = 1000;
 
-/// Limits of masses, in kg. Beyond these limits, products of masses and of their inverses leave the range of the
-/// arithmetic. Local: a limit of input values.
+/// Limits of masses, in kg, whose products and inverses stay in range. Local: a limit of input values.
 constexpr double kLeastMass = 1e-100;
 constexpr double kLargestMass = 1e100;
 
@@ -79,8 +78,7 @@ void validate_column(const SimulationSetup& setup, const Subject& subject) {
     }
 }
 
-/// Refuses springs between overlapping spheres. Contacts would separate the spheres and stretch the springs in every
-/// step.
+/// Refuses springs between overlapping spheres, which contacts would stretch in every step.
 void validate_joined(const SimulationSetup& setup, const Subject& subject) {
     for (const Spring& spring : setup.springs) {
         if (std::max(spring.first, spring.second) >= setup.particles.size()) continue;

@@ -45,42 +45,34 @@ void validate_particles_forces(const SimulationSetup& setup) {
     }
 }
 
-void validate_deforming(const ColliderDescription& collider, const SimulationOptions& options, const Subject& subject) {
-    if (!collider.frame.empty()) {
-        subject.refuse("frame", collider.frame, "none: a mesh that deforms stands in the world");
-    }
-    if (options.response != ResponseKind::exact) {
-        subject.refuse("motion", "positions in time",
-                       fmt::format("none: the {} response knows no meshes that deform, only exact does",
-                                   name_of(options.response)));
-    }
-    if (options.flow) {
-        subject.refuse("motion", "positions in time", "none: particles that a flow carries know no meshes that deform");
-    }
-}
-
-/// Validates moving colliders. They require the exact response, because only this response computes positions of
-/// colliders within a step.
+/// Validates moving and deforming colliders, whose positions within a step only the exact response computes.
 void validate_moving_colliders(const SimulationSetup& setup) {
     for (std::size_t k = 0; k < setup.colliders.size(); ++k) {
         const ColliderDescription& collider = setup.colliders[k];
         const Subject subject("collider", k, collider.name);
-        if (is_deforming(collider)) validate_deforming(collider, setup.options, subject);
-        if (collider.frame.empty()) continue;
-        if (!setup.frames || !setup.frames->find(collider.frame)) {
-            subject.refuse("frame", collider.frame, "the name of a frame of the setup");
+        const auto refuse_frame = [&](bool refused, const char* expected) {
+            if (refused) subject.refuse("frame", collider.frame, expected);
+        };
+        const bool deforms = is_deforming(collider);
+        if (!deforms && collider.frame.empty()) continue;
+        if (deforms) {
+            refuse_frame(!collider.frame.empty(), "none: a mesh that deforms stands in the world");
+        } else {
+            const auto frame = setup.frames ? setup.frames->find(collider.frame) : std::nullopt;
+            refuse_frame(!frame, "the name of a frame of the setup");
+            refuse_frame(setup.frames->is_scaled(*frame),
+                         "a frame without a scale: stretched_motion() says how a mesh in it deforms");
         }
-        if (setup.frames->is_scaled(*setup.frames->find(collider.frame))) {
-            subject.refuse("frame", collider.frame,
-                           "a frame without a scale: stretched_motion() says how a mesh in it deforms");
-        }
-        if (setup.options.response != ResponseKind::exact) {
-            subject.refuse("frame", collider.frame,
-                           fmt::format("none: the {} response knows no colliders that move, only exact does",
-                                       name_of(setup.options.response)));
+        const char* const what = deforms ? "motion" : "frame";
+        const std::string found = deforms ? "positions in time" : collider.frame;
+        const char* const kind = deforms ? "meshes that deform" : "colliders that move";
+        const ResponseKind response = setup.options.response;
+        if (response != ResponseKind::exact) {
+            subject.refuse(what, found,
+                           fmt::format("none: the {} response knows no {}, only exact does", name_of(response), kind));
         }
         if (setup.options.flow) {
-            subject.refuse("frame", collider.frame, "none: particles that a flow carries know no colliders that move");
+            subject.refuse(what, found, fmt::format("none: particles that a flow carries know no {}", kind));
         }
     }
 }
@@ -126,8 +118,7 @@ void validate_bodies(const SimulationSetup& setup) {
     }
 }
 
-/// Refuses parts of a setup that exclude clouds. In a cloud, parents are moved before their children, and each particle
-/// is moved separately.
+/// Refuses parts of a setup that exclude clouds, in which each particle is moved separately, after its parent.
 void validate_clouds(const SimulationSetup& setup) {
     const auto found = std::find_if(setup.emitters.begin(), setup.emitters.end(), is_cloud);
     if (found == setup.emitters.end()) return;

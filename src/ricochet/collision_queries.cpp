@@ -158,8 +158,8 @@ bool CollisionQueries::is_inside(const Vec3& point) const {
     require_position(point, "point");
     const auto& shapes = impl_->world->shapes();
     const auto& interiors = impl_->interiors();
-    return std::any_of(shapes.begin(), shapes.end(), [&](const auto& s) { return s.shape.side(point) < 0; }) ||
-           std::any_of(interiors.begin(), interiors.end(), [&](const auto& mesh) { return mesh.contains(point); });
+    return std::ranges::any_of(shapes, [&](const auto& s) { return s.shape.side(point) < 0; }) ||
+           std::ranges::any_of(interiors, [&](const auto& mesh) { return mesh.contains(point); });
 }
 
 }  // namespace ricochet

@@ -148,7 +148,7 @@ const std::vector<Violation>& Simulation::last_violations() const { return impl(
 bool Simulation::is_penetrating(std::size_t i) const {
     require_index(i, impl().population.store().size(), "particle");
     const std::span<const SideMemory> sides = impl().population.store().sides_of(i);
-    return std::any_of(sides.begin(), sides.end(), [](const SideMemory& memory) { return memory.penetrating; });
+    return std::ranges::any_of(sides, [](const SideMemory& memory) { return memory.penetrating; });
 }
 
 const std::vector<std::string>& Simulation::warnings() const { return impl().warnings.texts(); }

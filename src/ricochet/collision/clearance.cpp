@@ -49,7 +49,7 @@ std::vector<Limit> limits_near(const CollisionWorld& world, const Vec3& center, 
             return radius + reach;
         });
     }
-    std::sort(limits.begin(), limits.end(), [](const Limit& a, const Limit& b) {
+    std::ranges::sort(limits, [](const Limit& a, const Limit& b) {
         return a.missing != b.missing ? a.missing > b.missing : a.surface < b.surface;
     });
     limits.resize(std::min(limits.size(), kMostSurfaces));
@@ -87,9 +87,8 @@ private:
 
     void consider(const Vec3& displacement) {
         if (best_ && !(length_squared(displacement) < length_squared(*best_))) return;
-        const bool is_clear = std::all_of(limits_.begin(), limits_.end(), [&](const Limit& limit) {
-            return dot(displacement, limit.normal) >= limit.missing - slack_;
-        });
+        const bool is_clear = std::ranges::all_of(
+            limits_, [&](const Limit& limit) { return dot(displacement, limit.normal) >= limit.missing - slack_; });
         if (is_clear) best_ = displacement;
     }
 

@@ -42,8 +42,7 @@ void DeformingColliders::near(const Box3& box, std::vector<SurfaceId>& out) cons
 }
 
 bool DeformingColliders::stay_out(const Box3& box) const {
-    return std::none_of(meshes_.begin(), meshes_.end(),
-                        [&](const DeformingMesh& mesh) { return mesh.tree().has_near(box); });
+    return std::ranges::none_of(meshes_, [&](const DeformingMesh& mesh) { return mesh.tree().has_near(box); });
 }
 
 double DeformingColliders::offset_in(const Box3& box) const {
@@ -64,7 +63,7 @@ bool DeformingColliders::is_segment_free(const StoredPosition& from, const Store
         }
     }
     const double tolerance = sphere_tolerance(radius, std::max(max_abs(from.position), max_abs(to.position)));
-    return std::all_of(all.begin(), all.end(), [&](SurfaceId surface) {
+    return std::ranges::all_of(all, [&](SurfaceId surface) {
         const DeformingMesh& mesh = mesh_with(surface);
         if (radius == 0.0) return mesh.is_free(surface, from, to, 0.0);
         // The ends must keep more distance than the certificate requires, because losses in successive segments add up.
@@ -80,8 +79,8 @@ bool DeformingColliders::is_segment_free(const StoredPosition& from, const Store
 
 bool DeformingColliders::is_late_segment_free(const StoredPosition& from, const StoredPosition& to,
                                               double radius) const {
-    return std::all_of(meshes_.begin(), meshes_.end(),
-                       [&](const DeformingMesh& mesh) { return mesh.is_late_segment_free(from, to, radius); });
+    return std::ranges::all_of(meshes_,
+                               [&](const DeformingMesh& mesh) { return mesh.is_late_segment_free(from, to, radius); });
 }
 
 void DeformingColliders::nearest_to(const Vec3& p, double time, std::size_t most, std::vector<SurfaceId>& out) const {

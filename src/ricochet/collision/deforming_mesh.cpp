@@ -115,7 +115,7 @@ void DeformingMesh::begin_step(double begin, double end, std::vector<Box3>& boxe
     moments.push_back(motion_->at(end));
     at_begin_ = moments.front();
     at_end_ = moments.back();
-    const bool is_at_rest = std::all_of(moments.begin(), moments.end(), [&](const MeshMoment& moment) {
+    const bool is_at_rest = std::ranges::all_of(moments, [&](const MeshMoment& moment) {
         return moment.duration == 0.0 && moment.from.data() == moments[0].from.data();
     });
     const Vec3* const resting_vertices = is_at_rest ? moments[0].from.data() : nullptr;
@@ -134,7 +134,7 @@ void DeformingMesh::begin_step(double begin, double end, std::vector<Box3>& boxe
         }
         largest[block] = std::max(max_abs(all.lower), max_abs(all.upper));
     });
-    const double most = largest.empty() ? 0.0 : *std::max_element(largest.begin(), largest.end());
+    const double most = largest.empty() ? 0.0 : *std::ranges::max_element(largest);
     offset_ = contact_offset({most, 0.0, 0.0});
     tree_.fit(solid_.size(), [&](std::uint32_t k) {
         const auto [a, b, c] = triangles_[solid_[k]];
@@ -209,7 +209,7 @@ bool DeformingMesh::is_free(SurfaceId surface, const StoredPosition& from, const
 bool DeformingMesh::is_late_segment_free(const StoredPosition& from, const StoredPosition& to, double radius) const {
     const Box3 swept = box_of(from, to, radius);
     const double tolerance = sphere_tolerance(radius, std::max(max_abs(from.position), max_abs(to.position)));
-    return std::all_of(solid_.begin(), solid_.end(), [&](std::uint32_t t) {
+    return std::ranges::all_of(solid_, [&](std::uint32_t t) {
         const SurfaceId surface = first_surface_ + t;
         const MovingTriangle triangle = between(surface, from.time, to.time);
         if (!overlap(box_of(triangle), swept)) return true;

@@ -33,7 +33,7 @@ DeformingSweep::DeformingSweep(const DeformingColliders& deforming, const Path& 
 }
 
 bool DeformingSweep::is_supported(SurfaceId surface) const {
-    return std::find(supports_.begin(), supports_.end(), surface) != supports_.end();
+    return std::ranges::find(supports_, surface) != supports_.end();
 }
 
 /// Returns the radius with which segments are certified. Supports and overlapped surfaces block only intersections.
@@ -98,7 +98,7 @@ std::optional<Contact> DeformingSweep::first_of(std::vector<Hit> hits) const {
         if (a.time != b.time) return a.time < b.time;
         return a.surface.surface < b.surface.surface;
     };
-    std::sort(hits.begin(), hits.end(), earlier);
+    std::ranges::sort(hits, earlier);
     Contact contact;
     contact.time = hits.front().time;
     // Faces come before edges, so that a seam beside its own face is ignored.
@@ -109,7 +109,7 @@ std::optional<Contact> DeformingSweep::first_of(std::vector<Hit> hits) const {
                 return dot(known.normal, hit.surface.normal) > 1.0 - kSameNormal;
             };
             const auto known = contact.all();
-            if (hit.surface.flat != flat || std::any_of(known.begin(), known.end(), is_same)) continue;
+            if (hit.surface.flat != flat || std::ranges::any_of(known, is_same)) continue;
             if (contact.count < Contact::kMostSurfaces) {
                 contact.surfaces[static_cast<std::size_t>(contact.count++)] = hit.surface;
             }

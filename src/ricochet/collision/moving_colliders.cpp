@@ -101,8 +101,7 @@ MovingColliders::MovingColliders(const CollisionWorld& at_rest, std::shared_ptr<
         if (!frame) {
             throw InputError("collider \"" + collider.name + "\": there is no frame '" + collider.frame + "'");
         }
-        const auto known =
-            std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& body) { return body.frame == *frame; });
+        const auto known = std::ranges::find_if(bodies_, [&](const Body& body) { return body.frame == *frame; });
         body_of_collider_.push_back(static_cast<BodyId>(known - bodies_.begin()));
         if (known != bodies_.end()) continue;
         bodies_.push_back({std::make_unique<CollisionWorld>(at_rest.list(), collider.frame), *frame, {}, {}, {}, {}});
@@ -145,9 +144,8 @@ void MovingColliders::begin_step(double begin, double end) {
         body.at_begin = frames_->at(body.frame, begin);
         body.at_end = frames_->at(body.frame, end);
         body.bounds = frames_->bounds(body.frame, begin, end);
-        body.swept = body.world->planes().empty()
-                         ? swept_box(*frames_, body.frame, body.world->bounds(), begin, end)
-                         : everywhere();
+        body.swept = body.world->planes().empty() ? swept_box(*frames_, body.frame, body.world->bounds(), begin, end)
+                                                  : everywhere();
     });
     bounded_.clear();
     unbounded_.clear();
@@ -189,8 +187,7 @@ void MovingColliders::near_at(const Box3& box, double time, std::vector<BodyId>&
 
 bool MovingColliders::all_stay_out(const Box3& box) const {
     const auto meets = [&](BodyId body) { return overlap(bodies_[body].swept, box); };
-    return std::none_of(unbounded_.begin(), unbounded_.end(), meets) && !swept_.has_near(box) &&
-           deforming_.stay_out(box);
+    return std::ranges::none_of(unbounded_, meets) && !swept_.has_near(box) && deforming_.stay_out(box);
 }
 
 const MotionBounds& MovingColliders::bounds(BodyId body) const {

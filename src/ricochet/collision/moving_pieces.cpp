@@ -105,8 +105,7 @@ double MovingPieces::tolerance_in(BodyId body) const {
 }
 
 double MovingPieces::tolerance_of(BodyId body) const {
-    const auto found =
-        std::find_if(lists_.bodies.begin(), lists_.bodies.end(), [&](const NearBody& near) { return near.id == body; });
+    const auto found = std::ranges::find_if(lists_.bodies, [&](const NearBody& near) { return near.id == body; });
     return found == lists_.bodies.end() ? tolerance_in(body) : found->tolerance;
 }
 
@@ -149,7 +148,7 @@ void MovingPieces::cut() {
     for (const NearBody& body : lists_.bodies) add_keys(body.id);
     for (const double key : deforming_keys()) keys.push_back(path_time_of(key));
     keys.push_back(duration);
-    std::sort(keys.begin(), keys.end());
+    std::ranges::sort(keys);
     find_rates();
     lists_.cuts.assign(1, 0.0);
     for (const double key : keys) {
@@ -217,7 +216,7 @@ void MovingPieces::set_times() {
     for (const double cut : lists_.cuts) times_.push_back(clock.at(cut));
     times_.back() = clock.end;
     for (const double key : deforming_keys()) {
-        const auto at = std::find(lists_.cuts.begin(), lists_.cuts.end(), path_time_of(key)) - lists_.cuts.begin();
+        const auto at = std::ranges::find(lists_.cuts, path_time_of(key)) - lists_.cuts.begin();
         for (std::ptrdiff_t k = 0; k < std::ssize(times_); ++k) {
             double& time = times_[static_cast<std::size_t>(k)];
             time = k < at ? std::min(time, key) : (k > at ? std::max(time, key) : key);

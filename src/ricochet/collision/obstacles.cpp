@@ -77,7 +77,7 @@ void Obstacles::gather(const Vec3& to, const Vec3& p, const Vec3& v, std::vector
         return true;
     });
     drop_seams(out);
-    std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.surface < b.surface; });
+    std::ranges::sort(out, [](const auto& a, const auto& b) { return a.surface < b.surface; });
     out.erase(std::unique(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.surface == b.surface; }),
               out.end());
 }

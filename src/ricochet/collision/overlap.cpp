@@ -89,7 +89,7 @@ std::optional<Vec3> off_bodies(const MovingColliders& bodies, const Vec3& center
             if (world.point_on(surface, local_position)) under.push_back(surface);
             return offset;
         });
-        std::sort(under.begin(), under.end());
+        std::ranges::sort(under);
         Vec3 normal;
         for (const SurfaceId surface : under) normal += world.unit_normal_of(surface, local_position);
         if (normal == Vec3{}) continue;
@@ -115,7 +115,7 @@ std::vector<SurfaceId> surfaces_touched(const CollisionWorld& world, const Vec3&
         if (distance > 0.0 && std::fabs(distance - radius) <= reach) touched.push_back(surface);
         return radius + reach;
     });
-    std::sort(touched.begin(), touched.end());
+    std::ranges::sort(touched);
     return touched;
 }
 

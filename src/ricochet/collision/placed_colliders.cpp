@@ -103,7 +103,7 @@ PlacedColliders::PlacedColliders(std::shared_ptr<ColliderList> colliders, std::s
         }
     }
     degenerate_ = degenerate_flags(vertices_, triangles_);
-    degenerate_count_ = static_cast<std::size_t>(std::count(degenerate_.begin(), degenerate_.end(), 1));
+    degenerate_count_ = static_cast<std::size_t>(std::ranges::count(degenerate_, 1));
     if (degenerate_count_ == 0) degenerate_ = {};
     triangle_bounds_ = box_of(vertices_, triangles_);
     bounds_ = triangle_bounds_;
@@ -169,8 +169,8 @@ void PlacedColliders::add_mesh(std::size_t number, const MeshShape& shape) {
     triangles_.resize(triangles_after);
     parallel_for(mesh.triangles.size(), kBlock, [&](std::size_t i) {
         const Triangle& t = mesh.triangles[i];
-        triangles_[first + i] = flip ? Triangle{base + t[0], base + t[2], base + t[1]}
-                                     : Triangle{base + t[0], base + t[1], base + t[2]};
+        triangles_[first + i] =
+            flip ? Triangle{base + t[0], base + t[2], base + t[1]} : Triangle{base + t[0], base + t[1], base + t[2]};
     });
 }
 

@@ -82,9 +82,9 @@ bool SignedDistance::improves(const Candidate& best, Candidate& candidate, const
     return comes_before(candidate.nearest, candidate.triangle, best.nearest, best.triangle);
 }
 
-/// Finds the nearest triangle of each of the meshes [first, end) in one traversal. Once a triangle of each mesh has been
-/// found, the search continues within the largest distance found. The result is valid until this thread's next call.
-/// Without culling, every triangle is visited, as a reference for tests.
+/// Finds the nearest triangle of each of the meshes [first, end) in one traversal. Once a triangle of each mesh has
+/// been found, the search continues within the largest distance found. The result is valid until this thread's next
+/// call. Without culling, every triangle is visited, as a reference for tests.
 const std::vector<SignedDistance::Candidate>& SignedDistance::nearest_triangles(std::uint32_t first, std::uint32_t end,
                                                                                 const Vec3& p, double within) const {
     thread_local std::vector<Candidate> found;
@@ -195,7 +195,7 @@ std::size_t SignedDistance::count_met(std::uint32_t collider, const Vec3& p, con
         if (triangle < mesh.first_triangle || triangle >= mesh.end_triangle || world_.is_degenerate(triangle))
             return 1.0;
         const SurfaceId surface = range.first_surface + (triangle - mesh.first_triangle);
-        if (std::find(met.begin(), met.end(), triangle) == met.end() && world_.segment_intersects(surface, p, q)) {
+        if (std::ranges::find(met, triangle) == met.end() && world_.segment_intersects(surface, p, q)) {
             met.push_back(triangle);
         }
         return 1.0;

@@ -19,11 +19,10 @@ bool SurfacesInOtherFrames::is_free(const Deforming& triangle, const PathPoint& 
 }
 
 bool SurfacesInOtherFrames::are_free(const PathPoint& p, const PathPoint& q) const {
-    return std::all_of(
-               bodies_.begin(), bodies_.end(),
+    return std::ranges::all_of(
+               bodies_,
                [&](const Body& body) { return body.near.is_free(local_position(body, p), local_position(body, q)); }) &&
-           std::all_of(deforming_.begin(), deforming_.end(),
-                       [&](const Deforming& triangle) { return is_free(triangle, p, q); });
+           std::ranges::all_of(deforming_, [&](const Deforming& triangle) { return is_free(triangle, p, q); });
 }
 
 std::optional<SurfaceId> SurfacesInOtherFrames::blocker(const PathPoint& p, const PathPoint& q) const {
@@ -46,8 +45,7 @@ std::optional<SurfaceId> SurfacesInOtherFrames::overlap_deepened_by(const PathPo
 }
 
 bool SurfacesInOtherFrames::cover_chord(double from, double to) const {
-    return std::all_of(bodies_.begin(), bodies_.end(),
-                       [&](const Body& body) { return body.near.covers_chord(body.path, from, to); });
+    return std::ranges::all_of(bodies_, [&](const Body& body) { return body.near.covers_chord(body.path, from, to); });
 }
 
 double SurfacesInOtherFrames::offset_at(const PathPoint& p) const {

@@ -34,7 +34,7 @@ bool is_near_dynamic_body(const ResponseRules& rules, const ForceInput& state, d
     const Box3 box{state.position - by, state.position + by};
     std::vector<BodyId> near;
     rules.bodies.near(box, kWorldBody, near);
-    return std::any_of(near.begin(), near.end(), [&](BodyId body) { return rules.bodies.is_dynamic(body); });
+    return std::ranges::any_of(near, [&](BodyId body) { return rules.bodies.is_dynamic(body); });
 }
 
 void prefetch_triangles(const ContactCandidates& candidates, const CollisionWorld& world) {

@@ -39,8 +39,8 @@ std::vector<Emitter> make_emitters(SimulationSetup& setup) {
 
 bool makes_spheres(const std::vector<Particle>& particles, const std::vector<Emitter>& emitters) {
     const auto is_sphere = [](const Particle& particle) { return particle.radius > 0.0; };
-    return std::any_of(particles.begin(), particles.end(), is_sphere) ||
-           std::any_of(emitters.begin(), emitters.end(), [](const Emitter& emitter) { return makes_spheres(emitter); });
+    return std::ranges::any_of(particles, is_sphere) ||
+           std::ranges::any_of(emitters, [](const Emitter& emitter) { return makes_spheres(emitter); });
 }
 
 }  // namespace
@@ -85,14 +85,13 @@ StepBirths::Wave StepBirths::next_wave() {
         if (tests_.among && !wave.empty()) break;
     }
     const auto by_time = [](const Entry& a, const Entry& b) { return a.due.time < b.due.time; };
-    if (!std::is_sorted(wave.begin(), wave.end(), by_time)) std::stable_sort(wave.begin(), wave.end(), by_time);
+    if (!std::ranges::is_sorted(wave, by_time)) std::ranges::stable_sort(wave, by_time);
     return wave;
 }
 
 bool StepBirths::may_be_refused(const Wave& wave) const {
     if (!tests_.alone && !tests_.among) return false;
-    return std::any_of(wave.begin(), wave.end(),
-                       [this](const Entry& entry) { return makes_spheres(emitters_[entry.emitter]); });
+    return std::ranges::any_of(wave, [this](const Entry& entry) { return makes_spheres(emitters_[entry.emitter]); });
 }
 
 void StepBirths::make(Wave& wave) {
@@ -153,7 +152,7 @@ void StepBirths::give_ids() {
     const auto by_order = [](const Entry& a, const Entry& b) {
         return std::tuple(a.due.time, a.emitter, a.due.number) < std::tuple(b.due.time, b.emitter, b.due.number);
     };
-    if (made_.size() > 1) std::sort(all_.begin(), all_.end(), by_order);
+    if (made_.size() > 1) std::ranges::sort(all_, by_order);
     count_ = std::min<std::uint64_t>(all_.size(), limits_.most_births);
     for (std::uint64_t k = 0; k < count_; ++k) {
         if (all_[k].made == nullptr) continue;

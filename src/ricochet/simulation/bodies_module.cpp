@@ -80,7 +80,7 @@ const char* BodiesModule::fault(double time) const {
     const auto is_sound = [](const DrivenBody& body) {
         return is_in_range(body.center()) && is_in_range(body.velocity()) && is_in_range(body.angular_velocity());
     };
-    const bool are_sound = std::all_of(bodies().begin(), bodies().end(), is_sound);
+    const bool are_sound = std::ranges::all_of(bodies(), is_sound);
     return are_sound ? nullptr : "a body with a position or velocity out of range";
 }
 

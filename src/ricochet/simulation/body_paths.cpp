@@ -27,9 +27,8 @@ bool is_rigid(const AffineMap& map) {
 }
 
 bool is_path(const BodyPath& path) {
-    const bool is_path_finite = std::all_of(path.center_path.begin(), path.center_path.end(), is_finite);
-    const bool is_turn_finite =
-        std::all_of(path.turns.begin(), path.turns.end(), [](double x) { return std::isfinite(x); });
+    const bool is_path_finite = std::ranges::all_of(path.center_path, is_finite);
+    const bool is_turn_finite = std::ranges::all_of(path.turns, [](double x) { return std::isfinite(x); });
     return std::isfinite(path.begin) && std::isfinite(path.end) && path.begin <= path.end && is_path_finite &&
            is_turn_finite && std::isfinite(path.degrees) && is_finite(path.carrier) && is_unit(path.axis) &&
            is_rigid(path.at_begin);
@@ -139,8 +138,8 @@ void BodyPaths::publish_velocity_jump(std::size_t body, std::size_t path) const 
 bool BodyPaths::is_sound(std::size_t body) const {
     const std::vector<BodyPath>& paths = of(body);
     const auto leaves_gap = [](const BodyPath& a, const BodyPath& b) { return a.end != b.begin; };
-    return is_body(bodies_[body]) && std::all_of(paths.begin(), paths.end(), is_path) &&
-           std::adjacent_find(paths.begin(), paths.end(), leaves_gap) == paths.end() && paths.size() == of(0).size() &&
+    return is_body(bodies_[body]) && std::ranges::all_of(paths, is_path) &&
+           std::ranges::adjacent_find(paths, leaves_gap) == paths.end() && paths.size() == of(0).size() &&
            (!is_planned_ || !paths.empty());
 }
 

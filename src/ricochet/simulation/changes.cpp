@@ -60,13 +60,13 @@ std::size_t Simulation::remove_particles(std::span<const std::uint64_t> ids) {
     impl().control.begin_change();
     impl().share.require_alone("remove_particles");
     std::vector<std::uint64_t> sorted(ids.begin(), ids.end());
-    std::sort(sorted.begin(), sorted.end());
+    std::ranges::sort(sorted);
     Population& population = impl().population;
     std::vector<std::uint8_t> keep(population.size(), 1);
     std::size_t removed = 0;
     SimulationStatistics& statistics = impl().recorder.statistics();
     for (std::size_t i = 0; i < keep.size(); ++i) {
-        if (!std::binary_search(sorted.begin(), sorted.end(), impl().particles().id[i])) continue;
+        if (!std::ranges::binary_search(sorted, impl().particles().id[i])) continue;
         keep[i] = 0;
         ++removed;
         statistics.lost_impulses += impl().mover.add_weight(i, time(), 1.0);

@@ -54,7 +54,7 @@ void ChildrenModule::inherit_sides(const Child& child) {
     const std::size_t i = store.size() - 1;
     const Particles& particles = store.particles();
     if (!is_finite(particles.position[i])) return;
-    std::copy(child.parent_sides.begin(), child.parent_sides.end(), store.sides_of(i).begin());
+    std::ranges::copy(child.parent_sides, store.sides_of(i).begin());
     parts_.response.inherit_sides({child.parent_start, particles.position[i], particles.radius[i], child.goes_on},
                                   store.sides_of(i));
 }

@@ -44,8 +44,7 @@ CollisionScene::CollisionScene(std::vector<ColliderDescription> colliders, std::
       moving_(*world_, frames_) {}
 
 bool CollisionScene::has_loads() const {
-    return !moving_.empty() ||
-           std::any_of(materials_.begin(), materials_.end(), [](const Material& m) { return m.drives(); });
+    return !moving_.empty() || std::ranges::any_of(materials_, [](const Material& m) { return m.drives(); });
 }
 
 void CollisionScene::set_culling(bool culls) {

@@ -147,7 +147,7 @@ void ContactIslands::move(std::vector<IslandMember>& members, Work& work, const 
             member.is_planned = true;
             work.island.move(i, work.members[i], own);
             member.outcome = work.members[i].outcome;
-            const bool falls_asleep = std::binary_search(falling.begin(), falling.end(), member.moving.id);
+            const bool falls_asleep = std::ranges::binary_search(falling, member.moving.id);
             if (falls_asleep) member.outcome.end = MoveEnd::held;
             member.is_free = false;
             member.lists.take(own);

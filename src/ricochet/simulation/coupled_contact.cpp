@@ -20,7 +20,7 @@ void note_flown(const Flight& plan, const MovingParticle& moved, std::vector<Flo
 }
 
 bool is_as_planned(const Flight& plan, const MovingParticle& moved, std::span<const FlownPiece> flown) {
-    const bool is_free = std::all_of(flown.begin(), flown.end(), [](const FlownPiece& piece) { return piece.is_free; });
+    const bool is_free = std::ranges::all_of(flown, [](const FlownPiece& piece) { return piece.is_free; });
     return is_free && moved.state.position == plan.path.end && moved.state.velocity == plan.end_velocity;
 }
 

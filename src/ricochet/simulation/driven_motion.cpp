@@ -94,7 +94,7 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
     std::erase_if(preview, [&](const ColliderLoad& load) {
         return !load.impact || load.approach <= slow_ || !loads_on_bodies().body_of(load);
     });
-    std::stable_sort(preview.begin(), preview.end(), [](const ColliderLoad& a, const ColliderLoad& b) {
+    std::ranges::stable_sort(preview, [](const ColliderLoad& a, const ColliderLoad& b) {
         return std::tie(a.time, a.particle) < std::tie(b.time, b.particle);
     });
     const double end = paths_.planned(0).end;
@@ -114,7 +114,7 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
         }
         const auto at_once = std::span(preview).subspan(first, next - first);
         const bool is_too_much =
-            first > 0 && std::any_of(at_once.begin(), at_once.end(), [&](const ColliderLoad& load) {
+            first > 0 && std::ranges::any_of(at_once, [&](const ColliderLoad& load) {
                 const std::size_t body = *loads_on_bodies().body_of(load);
                 return tallies[body].changes_energy(load.time) ||
                        changes_velocity(load, before[body].wrench(), tallies[body], contacts_[body]);
@@ -360,7 +360,7 @@ bool DrivenMotion::is_sound(double time) const {
         const std::vector<std::uint64_t>& ids = contacts_[k].now;
         const bool is_whole = paths_.is_sound(k) && is_finite(resting_loads_[k].impulse) &&
                               is_finite(resting_loads_[k].moment) && relaxations_[k].is_sound() &&
-                              std::is_sorted(ids.begin(), ids.end());
+                              std::ranges::is_sorted(ids);
         if (!is_whole) return false;
     }
     // A substep that does not advance the time would be repeated forever.

@@ -143,7 +143,7 @@ std::vector<Subject> subjects_of(const SimulationSetup& setup, const ForceField&
         if (!setup.particles_forces.empty() && !subjects.empty()) subjects.back().is_coupled = true;
     }
     for (Subject& subject : subjects) subject.rate = rate_at(field, subject.state);
-    std::stable_sort(subjects.begin(), subjects.end(), [](const auto& a, const auto& b) { return a.rate > b.rate; });
+    std::ranges::stable_sort(subjects, [](const auto& a, const auto& b) { return a.rate > b.rate; });
     if (subjects.size() > kMostTried) subjects.resize(kMostTried);
     return subjects;
 }

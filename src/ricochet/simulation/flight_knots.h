@@ -62,8 +62,8 @@ inline void add_impacts(std::vector<FlightKnot>& knots, std::span<const ContactR
 class RecordsByParticle {
 public:
     explicit RecordsByParticle(std::vector<ContactRecord> records) : records_(std::move(records)) {
-        std::stable_sort(records_.begin(), records_.end(),
-                         [](const ContactRecord& a, const ContactRecord& b) { return a.particle < b.particle; });
+        std::ranges::stable_sort(
+            records_, [](const ContactRecord& a, const ContactRecord& b) { return a.particle < b.particle; });
     }
     [[nodiscard]] std::span<const ContactRecord> of(std::uint64_t id) const {
         const auto first =

@@ -60,7 +60,7 @@ public:
     /// Removes all steps. Must be called only after every particle has made them.
     void clear() {
         steps_.clear();
-        std::fill(made_.begin(), made_.end(), std::uint8_t{0});
+        std::ranges::fill(made_, std::uint8_t{0});
     }
 
 private:

@@ -112,7 +112,7 @@ void HeatStage::record(const ParticleRange& /*generation*/, const std::vector<Bl
 
 void HeatStage::after_generation(const ParticleRange& generation, const TimeSpan& step) {
     const auto is_before = [](const HeatGain& a, const HeatGain& b) { return a.particle < b.particle; };
-    std::stable_sort(gains_.begin(), gains_.end(), is_before);
+    std::ranges::stable_sort(gains_, is_before);
     Particles& particles = store_.particles();
     parallel_for(generation.size(), kParticleBlock, [&](std::size_t k) {
         const std::size_t i = generation.begin + k;

@@ -80,7 +80,7 @@ bool changes_velocity(const ColliderLoad& impact, const Wrench& before, const Im
 
 void BodyContacts::add(const std::vector<std::uint64_t>& ids) {
     now.insert(now.end(), ids.begin(), ids.end());
-    std::sort(now.begin(), now.end());
+    std::ranges::sort(now);
     now.erase(std::unique(now.begin(), now.end()), now.end());
 }
 
@@ -101,7 +101,7 @@ double end_after(std::span<const ImpactTally> taken, double time, double next, d
         end = std::max(soon_after(time, next, part), begin + shortest);
         shortest *= kShorterPart;
         const auto is_late = [&](const ImpactTally& tally) { return tally.changes_energy(end, part); };
-        if (std::none_of(taken.begin(), taken.end(), is_late)) break;
+        if (std::ranges::none_of(taken, is_late)) break;
     }
     return end;
 }

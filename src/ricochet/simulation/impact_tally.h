@@ -62,8 +62,7 @@ struct BodyContacts {
     Wrench taken;  ///< impulses applied at the ends of substeps of this step, N s, and N m s about moment_center()
 
     [[nodiscard]] bool has(std::uint64_t particle) const {
-        return std::binary_search(before.begin(), before.end(), particle) ||
-               std::binary_search(now.begin(), now.end(), particle);
+        return std::ranges::binary_search(before, particle) || std::ranges::binary_search(now, particle);
     }
     /// Adds ids. They can be in any order.
     void add(const std::vector<std::uint64_t>& ids);

@@ -119,7 +119,7 @@ void IslandBuilder::collect_members(Island& island, const TimeSpan& step) {
     std::vector<Placed> order;
     order.reserve(island.particles.size());
     for (const std::uint32_t k : island.particles) order.push_back({position[first_ + k].x, k});
-    std::sort(order.begin(), order.end(), [&](const Placed& a, const Placed& b) {
+    std::ranges::sort(order, [&](const Placed& a, const Placed& b) {
         if (a.x != b.x) return a.x < b.x;
         const Vec3& p = position[first_ + a.number];
         const Vec3& q = position[first_ + b.number];
@@ -177,8 +177,7 @@ IslandBuilder::OutOfBoundsMembers IslandBuilder::members_out_of_bounds() const {
 std::vector<std::vector<std::uint32_t>> IslandBuilder::met_by(const OutOfBoundsMembers& off) {
     std::vector<std::vector<std::uint32_t>> met(off.of_this_round);
     const auto for_each = [&](const auto& body) {
-        parallel_for(met.size(), kIslandBlock,
-                     [&](std::size_t n) { body(*off.members[n], off.swept[n], met[n]); });
+        parallel_for(met.size(), kIslandBlock, [&](std::size_t n) { body(*off.members[n], off.swept[n], met[n]); });
     };
     for_each([&](const IslandMember&, const Box3& swept, auto& found) { plans_.find_near(swept, found); });
     std::vector<std::uint32_t> all;
@@ -246,7 +245,7 @@ std::vector<std::uint32_t> IslandBuilder::members_joined() {
         if (is_joined[sets_.find(island.particles.front())] != 0)
             members.insert(members.end(), island.particles.begin(), island.particles.end());
     }
-    std::sort(members.begin(), members.end());
+    std::ranges::sort(members);
     members.erase(std::unique(members.begin(), members.end()), members.end());
     return members;
 }

@@ -88,7 +88,7 @@ void LastingContacts::wake_alone(const std::vector<std::uint64_t>& woken, double
     // Keeps only contacts with an impulse that the memory lacks, because the others of awake spheres are known or
     // ended.
     const auto has_slept = [&](std::uint64_t particle) {
-        return std::binary_search(woken.begin(), woken.end(), particle) || sleeping_islands_.is_asleep(particle) ||
+        return std::ranges::binary_search(woken, particle) || sleeping_islands_.is_asleep(particle) ||
                is_pinned(parts_.store, particle);
     };
     std::erase_if(contacts, [&](const WarmStartMemory::Entry& entry) {
@@ -194,7 +194,7 @@ std::vector<std::uint64_t> LastingContacts::loaded_sleepers(std::span<const Pair
 void LastingContacts::plan_sleep(std::span<const ContactIslandMember> members, ContactIsland& island,
                                  const TimeSpan& step, ContactIslandTrace& trace) const {
     if (are_children_ || !rules().forces.is_steady()) return;
-    const bool beside_movers = std::any_of(members.begin(), members.end(), [&](const ContactIslandMember& member) {
+    const bool beside_movers = std::ranges::any_of(members, [&](const ContactIslandMember& member) {
         return is_beside_movers(rules(), member.moving->state.position, member.radius);
     });
     std::vector<std::uint8_t> sleepy(members.size(), 0);
@@ -236,7 +236,7 @@ void LastingContacts::plan_sleep(std::span<const ContactIslandMember> members, C
                 {id, wall_impulse.surface, -(mass / members[i].duration) * wall_impulse.velocity_change});
         }
     }
-    std::sort(trace.falling_asleep.begin(), trace.falling_asleep.end());
+    std::ranges::sort(trace.falling_asleep);
 }
 
 void LastingContacts::end(std::span<const ContactIslandTrace* const> traces, std::span<const PairImpactRecord> impacts,
@@ -270,7 +270,7 @@ void LastingContacts::put_to_sleep(std::span<const ContactIslandTrace* const> tr
     for (const ContactIslandTrace* const trace : traces) {
         const std::vector<std::uint64_t>& own = trace->falling_asleep;
         if (own.empty()) continue;
-        const auto falls = [&](std::uint64_t id) { return std::binary_search(own.begin(), own.end(), id); };
+        const auto falls = [&](std::uint64_t id) { return std::ranges::binary_search(own, id); };
         std::copy_if(trace->pressed.begin(), trace->pressed.end(), std::back_inserter(contacts),
                      [&](const WarmStartMemory::Entry& entry) {
                          return falls(entry.key.particle) || (!entry.key.is_wall() && falls(entry.key.other));

@@ -24,7 +24,7 @@ double product(const DrivenBody& body, const Wrench& a, const Wrench& b) {
 
 std::optional<std::size_t> LoadsOnBodies::body_of(const ColliderLoad& load) const {
     const BodyId id = colliders_->body_of(load.surface);
-    const auto found = std::find(collider_of_.begin(), collider_of_.end(), id);
+    const auto found = std::ranges::find(collider_of_, id);
     if (id == kWorldBody || found == collider_of_.end()) return std::nullopt;
     return static_cast<std::size_t>(found - collider_of_.begin());
 }

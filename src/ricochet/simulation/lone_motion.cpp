@@ -16,7 +16,7 @@ bool is_bounded(const PairParts& parts) {
     const ResponseRules& rules = parts.response.rules();
     const auto gives_energy = [](const Material& m) { return m.drives() || m.wall_temperature.has_value(); };
     return rules.forces.is_uniform() && !parts.coupled.is_active() &&
-           std::none_of(rules.materials.begin(), rules.materials.end(), gives_energy);
+           std::ranges::none_of(rules.materials, gives_energy);
 }
 
 }  // namespace

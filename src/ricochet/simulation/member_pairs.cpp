@@ -53,7 +53,7 @@ void MemberPairs::update(std::span<const Box3> boxes, std::span<const std::uint3
         boxes_[slots_[i]] = boxes[i];
         changed_.push_back(slots_[i]);
     }
-    std::sort(changed_.begin(), changed_.end());
+    std::ranges::sort(changed_);
     static_cast<void>(near_.update(boxes_, changed_));
 }
 

@@ -61,10 +61,10 @@ double bytes_taken(const SimulationSetup& setup) {
 /// Returns true if something can remove particles before the end of their lifetime.
 bool may_retire_early(const SimulationSetup& setup) {
     return setup.bounds.has_value() ||
-           std::any_of(setup.materials.begin(), setup.materials.end(),
-                       [](const Material& material) { return material.absorption > 0.0; }) ||
-           std::any_of(setup.emitters.begin(), setup.emitters.end(),
-                       [](const EmitterDescription& emitter) { return emitter.parent && emitter.parent->share; });
+           std::ranges::any_of(setup.materials, [](const Material& material) { return material.absorption > 0.0; }) ||
+           std::ranges::any_of(setup.emitters, [](const EmitterDescription& emitter) {
+               return emitter.parent && emitter.parent->share;
+           });
 }
 
 /// Returns the mean number of particles per second.
@@ -94,8 +94,8 @@ double columns_of(const SimulationSetup& setup) {
 }
 
 bool has_children(const SimulationSetup& setup) {
-    return std::any_of(setup.emitters.begin(), setup.emitters.end(),
-                       [](const EmitterDescription& emitter) { return emitter.parent.has_value(); });
+    return std::ranges::any_of(setup.emitters,
+                               [](const EmitterDescription& emitter) { return emitter.parent.has_value(); });
 }
 
 /// Collects the memory needs of a setup.
@@ -191,8 +191,7 @@ double MemoryEstimate::bytes() const {
 }
 
 const MemoryNeed& MemoryEstimate::largest() const {
-    return *std::max_element(needs.begin(), needs.end(),
-                             [](const MemoryNeed& a, const MemoryNeed& b) { return a.bytes < b.bytes; });
+    return *std::ranges::max_element(needs, [](const MemoryNeed& a, const MemoryNeed& b) { return a.bytes < b.bytes; });
 }
 
 MemoryEstimate estimate_memory(const SimulationSetup& setup) {
@@ -213,11 +212,11 @@ void require_memory(const SimulationSetup& setup) {
 double bytes_per_particle(const SimulationSetup& setup) {
     double bytes = kParticle + kAttributeComponent * columns_of(setup);
     if (has_children(setup)) bytes += kChildLists;
-    if (std::any_of(setup.emitters.begin(), setup.emitters.end(), is_cloud)) bytes += kCloudParticle;
+    if (std::ranges::any_of(setup.emitters, is_cloud)) bytes += kCloudParticle;
     if (setup.options.verify) bytes += kVerifiedParticle;
     if (setup.options.particle_contacts) bytes += kCollidingSphere;
     const auto varies = [](const std::unique_ptr<Force>& force) { return force && !force->is_uniform(); };
-    if (std::any_of(setup.forces.begin(), setup.forces.end(), varies)) bytes += kClearBall;
+    if (std::ranges::any_of(setup.forces, varies)) bytes += kClearBall;
     if (!setup.particles_forces.empty()) bytes += kCoupledParticle;
     if (setup.options.response != ResponseKind::exact) bytes += kSide * static_cast<double>(setup.colliders.size());
     return bytes;

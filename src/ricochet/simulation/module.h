@@ -109,8 +109,7 @@ public:
     }
     /// Returns true if no module needs the positions of particles in free flight in every step.
     [[nodiscard]] bool allow_deferred_steps() const {
-        return std::all_of(modules_.begin(), modules_.end(),
-                           [](const auto& module) { return module->allows_deferred_steps(); });
+        return std::ranges::all_of(modules_, [](const auto& module) { return module->allows_deferred_steps(); });
     }
     /// Plans a substep of a generation. Each module can shorten the substep.
     [[nodiscard]] TimeSpan plan(const ParticleRange& generation, TimeSpan rest) const {

@@ -77,8 +77,8 @@ private:
 
 /// Returns the module, or null if no emitter has a parent.
 std::unique_ptr<ChildrenModule> make_children(const ModuleParts& parts) {
-    const bool has_children = std::any_of(parts.emitters.begin(), parts.emitters.end(),
-                                          [](const Emitter& e) { return e.description().parent.has_value(); });
+    const bool has_children =
+        std::ranges::any_of(parts.emitters, [](const Emitter& e) { return e.description().parent.has_value(); });
     return has_children ? std::make_unique<ChildrenModule>(parts) : nullptr;
 }
 
@@ -94,8 +94,7 @@ std::unique_ptr<HeatStage> make_heat(std::optional<HeatSettings>& heat, const Mo
 /// Returns the module, or null without clouds.
 std::unique_ptr<CloudMotion> make_clouds(const ModuleParts& parts, const Retirement& retirement,
                                          ChildrenModule* children) {
-    if (std::none_of(parts.emitters.begin(), parts.emitters.end(),
-                     [](const Emitter& e) { return is_cloud(e.description()); })) {
+    if (std::ranges::none_of(parts.emitters, [](const Emitter& e) { return is_cloud(e.description()); })) {
         return nullptr;
     }
     auto clouds = std::make_unique<CloudMotion>(parts.emitters, parts.population.store(), parts.mover, retirement);

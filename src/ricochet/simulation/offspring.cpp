@@ -75,7 +75,7 @@ Offspring::Offspring(const Parts& parts) : parts_(parts), children_of_(parts.emi
     }
     for (const auto& children : children_of_) {
         for (const BirthEvent event : {BirthEvent::death, BirthEvent::impact}) {
-            const auto shares = std::count_if(children.begin(), children.end(), [&](std::uint32_t child) {
+            const auto shares = std::ranges::count_if(children, [&](std::uint32_t child) {
                 const ParentRule& rule = *emitters[child].description().parent;
                 return rule.share && rule.on == event;
             });
@@ -245,7 +245,7 @@ void Offspring::allot_together(std::vector<Claim>& mine, std::size_t here, Offsp
     const auto rank = static_cast<std::uint32_t>(parts_.share.ranks().rank());
     for (std::size_t k = 0; k < mine.size(); ++k) mine[k].rank = rank, mine[k].event = k;
     std::vector<Claim> all = gather_list_to_all(parts_.share.ranks(), mine);
-    std::stable_sort(all.begin(), all.end(), [](const Claim& a, const Claim& b) { return a.precedes(b); });
+    std::ranges::stable_sort(all, [](const Claim& a, const Claim& b) { return a.precedes(b); });
     allot(all, parts_.share.living(here), std::numeric_limits<std::uint64_t>::max(), counts);
     std::uint64_t born_here = 0;
     for (const Claim& claim : all) {
@@ -279,8 +279,8 @@ void Offspring::add_cloud_child(const SpawnEvent& event, std::uint32_t ordinal, 
 }
 
 std::vector<Child> Offspring::spawn(std::vector<SpawnEvent>& events, std::size_t here, OffspringCounts& counts) const {
-    std::stable_sort(events.begin(), events.end(),
-                     [](const SpawnEvent& a, const SpawnEvent& b) { return a.claim.precedes(b.claim); });
+    std::ranges::stable_sort(events,
+                             [](const SpawnEvent& a, const SpawnEvent& b) { return a.claim.precedes(b.claim); });
     std::vector<Claim> claims;
     claims.reserve(events.size());
     for (const SpawnEvent& event : events) claims.push_back(event.claim);

@@ -82,7 +82,7 @@ bool PairPlans::expect_deflections() {
         boxes_[k] = alone_.reachable_box(k);
     }
     changed_.insert(changed_.end(), deflected.begin(), deflected.end());
-    std::sort(changed_.begin(), changed_.end());
+    std::ranges::sort(changed_);
     changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
     return !deflected.empty();
 }
@@ -94,7 +94,7 @@ std::vector<NeighbourPair> PairPlans::stack_on(std::vector<std::uint32_t> base) 
         if (is_resting_on(pair.first, pair.second)) resting_load.push_back({pair.second, pair.first});
     }
     const auto by_first = [](const NeighbourPair& a, const NeighbourPair& b) { return a.first < b.first; };
-    std::sort(resting_load.begin(), resting_load.end(), by_first);
+    std::ranges::sort(resting_load, by_first);
     std::vector<std::uint8_t> is_found(boxes_.size(), 0);
     for (const std::uint32_t k : base) is_found[k] = 1;
     std::vector<NeighbourPair> stack;

@@ -141,7 +141,7 @@ void ParticleStore::prefetch(std::size_t i) const {
 
 bool ParticleStore::is_sound(std::size_t i) const {
     const std::span<const SideMemory> sides = sides_of(i);
-    const bool are_sides_known = std::all_of(sides.begin(), sides.end(), [](const SideMemory& memory) {
+    const bool are_sides_known = std::ranges::all_of(sides, [](const SideMemory& memory) {
         return memory.side >= -1 && memory.side <= 1 && !std::isnan(memory.depth);
     });
     const bool is_core_inside = !cores_.has(i) || cores_.radius(i) <= particles_.radius[i];

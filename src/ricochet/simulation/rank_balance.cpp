@@ -17,9 +17,7 @@ constexpr std::uint64_t kIdleWork = 1;
 /// The inverse of the golden ratio, whose multiples fill the unit interval evenly. A mathematical constant.
 constexpr double kGoldenPart = 0.6180339887498949;
 
-double most_of(const std::vector<std::uint64_t>& work) {
-    return static_cast<double>(*std::max_element(work.begin(), work.end()));
-}
+double most_of(const std::vector<std::uint64_t>& work) { return static_cast<double>(*std::ranges::max_element(work)); }
 
 double mean_of(const std::vector<std::uint64_t>& work) {
     return static_cast<double>(std::accumulate(work.begin(), work.end(), std::uint64_t{0})) /

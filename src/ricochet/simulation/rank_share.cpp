@@ -18,7 +18,7 @@ void RankShare::require_alone(const char* call) const {
 }
 
 void RankShare::keep_together(std::vector<std::uint64_t> ids) {
-    std::sort(ids.begin(), ids.end());
+    std::ranges::sort(ids);
     ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
     together_ = std::move(ids);
 }
@@ -71,10 +71,10 @@ void RankShare::add_up(const ColliderList& colliders) {
     std::vector<Load> loads = gather_list(*ranks_, new_loads_);
     new_lost_times_.clear();
     new_loads_.clear();
-    std::stable_sort(times.begin(), times.end(), [](const LostTime& a, const LostTime& b) {
+    std::ranges::stable_sort(times, [](const LostTime& a, const LostTime& b) {
         return std::tuple(a.part, a.particle) < std::tuple(b.part, b.particle);
     });
-    std::stable_sort(loads.begin(), loads.end(), [](const Load& a, const Load& b) {
+    std::ranges::stable_sort(loads, [](const Load& a, const Load& b) {
         return std::tuple(a.part, a.load.particle) < std::tuple(b.part, b.load.particle);
     });
     for (const LostTime& entry : times) unsimulated_time_ += entry.time;

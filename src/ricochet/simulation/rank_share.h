@@ -49,7 +49,7 @@ public:
     void keep_together(std::vector<std::uint64_t> ids);
     [[nodiscard]] bool keeps_together() const { return !together_.empty(); }
     [[nodiscard]] bool stays(std::uint64_t id) const {
-        return !together_.empty() && std::binary_search(together_.begin(), together_.end(), id);
+        return !together_.empty() && std::ranges::binary_search(together_, id);
     }
     /// Returns true if a particle with this id lives on this rank. Not valid for children. A birth is tested with the
     /// id that it gets if no earlier birth of the step is refused.

@@ -78,7 +78,7 @@ void Simulation::restore_particles(const ByteSource& source) {
         part.archive(reader);
         if (part.next_id() != population.store().next_id()) throw InputError("the particles belong to another state");
         const std::vector<std::uint64_t>& ids = part.particles().id;
-        if (!std::is_sorted(ids.begin(), ids.end())) {
+        if (!std::ranges::is_sorted(ids)) {
             throw InputError("the particles are damaged: they are not in the order of their ids");
         }
         std::vector<std::uint8_t> keep;

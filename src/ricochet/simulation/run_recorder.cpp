@@ -29,7 +29,7 @@ template <class Entry>
 std::vector<Entry> in_order_of_particles(const std::vector<BlockRecord>& blocks,
                                          std::vector<Entry> BlockRecord::*list) {
     std::vector<Entry> all = joined(blocks, list);
-    std::stable_sort(all.begin(), all.end(), [](const Entry& a, const Entry& b) { return a.particle < b.particle; });
+    std::ranges::stable_sort(all, [](const Entry& a, const Entry& b) { return a.particle < b.particle; });
     return all;
 }
 
@@ -109,9 +109,8 @@ void RunRecorder::record(const std::vector<BlockRecord>& blocks) {
     // Pinched particles do not count, because more bounces would not help them.
     for (const BlockRecord& block : blocks) statistics_.budget_exhausted -= block.counts.squeezed;
     const std::vector<Violation> found = in_order_of_particles(blocks, &BlockRecord::violations);
-    const auto of_energy = static_cast<std::uint64_t>(std::count_if(found.begin(), found.end(), [](const Violation& v) {
-        return v.kind == ViolationKind::energy || v.kind == ViolationKind::rebound;
-    }));
+    const auto of_energy = static_cast<std::uint64_t>(std::ranges::count_if(
+        found, [](const Violation& v) { return v.kind == ViolationKind::energy || v.kind == ViolationKind::rebound; }));
     statistics_.energy_violations += of_energy;
     statistics_.violations += found.size() - of_energy;
     list(found);
@@ -156,17 +155,16 @@ void RunRecorder::end_generation(std::size_t particles) {
 
 // The sort is stable, because the impacts of one particle are already in the order of events.
 void RunRecorder::put_in_order(std::vector<ContactRecord>& records) {
-    std::stable_sort(records.begin(), records.end(), [](const ContactRecord& a, const ContactRecord& b) {
+    std::ranges::stable_sort(records, [](const ContactRecord& a, const ContactRecord& b) {
         return a.time != b.time ? a.time < b.time : a.particle < b.particle;
     });
 }
 
 void RunRecorder::end_step() {
     put_in_order(contacts_);
-    std::stable_sort(pair_records_.begin(), pair_records_.end(),
-                     [](const PairImpactRecord& a, const PairImpactRecord& b) {
-                         return a.time != b.time ? a.time < b.time : a.first < b.first;
-                     });
+    std::ranges::stable_sort(pair_records_, [](const PairImpactRecord& a, const PairImpactRecord& b) {
+        return a.time != b.time ? a.time < b.time : a.first < b.first;
+    });
 }
 
 namespace {

@@ -16,16 +16,15 @@ double chord_margin(const AccelerationSwitches& acceleration, const ForceField& 
 }
 
 bool has_children(const SimulationSetup& setup) {
-    return std::any_of(setup.emitters.begin(), setup.emitters.end(),
-                       [](const EmitterDescription& emitter) { return emitter.parent.has_value(); });
+    return std::ranges::any_of(setup.emitters,
+                               [](const EmitterDescription& emitter) { return emitter.parent.has_value(); });
 }
 
 bool keeps_origin(const SimulationSetup& setup) {
     const auto asks_for_emitters = [](const ParticlesForceEntry& entry) { return !entry.emitters.empty(); };
     const auto has_curves = [](const EmitterDescription& emitter) { return !emitter.curves.empty(); };
-    return has_children(setup) ||
-           std::any_of(setup.particles_forces.begin(), setup.particles_forces.end(), asks_for_emitters) ||
-           std::any_of(setup.emitters.begin(), setup.emitters.end(), has_curves);
+    return has_children(setup) || std::ranges::any_of(setup.particles_forces, asks_for_emitters) ||
+           std::ranges::any_of(setup.emitters, has_curves);
 }
 
 ParticleStore make_store(const SimulationSetup& setup, const CollisionScene& scene, const Response& response) {

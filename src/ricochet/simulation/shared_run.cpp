@@ -96,7 +96,7 @@ void SharedRun::give_away(TransferChoice choice) {
 
 /// Returns the particles that move to a rank, as bytes. Returns no bytes if no particle moves to the rank.
 std::vector<std::byte> SharedRun::bytes_for(std::uint32_t rank, const std::vector<std::uint32_t>& goes_to) const {
-    if (std::find(goes_to.begin(), goes_to.end(), rank) == goes_to.end()) return {};
+    if (std::ranges::find(goes_to, rank) == goes_to.end()) return {};
     std::vector<std::uint8_t> given;
     for (const std::uint32_t to : goes_to) given.push_back(to == rank ? 1 : 0);
     ParticleStore part = parts_.population.store();

@@ -34,7 +34,7 @@ std::uint32_t steps_to_sleep(const ContactIslandMember& member, double pull) {
 
 bool is_carried_by_material(const ResponseRules& rules, const ContactIsland& island, std::size_t index) {
     const std::vector<WallImpulse> impulses = island.impulses_of(index);
-    return std::any_of(impulses.begin(), impulses.end(), [&](const WallImpulse& wall_impulse) {
+    return std::ranges::any_of(impulses, [&](const WallImpulse& wall_impulse) {
         return rules.materials[rules.world.material_of(wall_impulse.surface)].drives();
     });
 }
@@ -43,7 +43,7 @@ bool is_supported_by_surfaces(const ResponseRules& rules, const ContactIslandMem
                               const ContactIsland& island, std::size_t index) {
     const std::vector<WallImpulse> impulses = island.impulses_of(index);
     const Vec3 pull = rules.forces.acceleration(member.moving->state);
-    return std::any_of(impulses.begin(), impulses.end(), [&](const WallImpulse& wall_impulse) {
+    return std::ranges::any_of(impulses, [&](const WallImpulse& wall_impulse) {
         return holds(rules, wall_impulse.surface, wall_impulse.velocity_change, pull);
     });
 }

@@ -27,7 +27,7 @@ auto range_of(List& list, std::uint64_t particle) {
 bool SleepingIslands::is_sound(std::uint64_t next_id, std::size_t surfaces) const {
     const auto ascend = [](const auto& list) {
         const auto falls = [](const auto& a, const auto& b) { return a.particle >= b.particle; };
-        return std::adjacent_find(list.begin(), list.end(), falls) == list.end();
+        return std::ranges::adjacent_find(list, falls) == list.end();
     };
     const auto is_sleeper_sound = [&](const Sleeper& s) {
         return s.particle < next_id && s.sleeping_island <= s.particle;
@@ -36,11 +36,9 @@ bool SleepingIslands::is_sound(std::uint64_t next_id, std::size_t surfaces) cons
         return is_asleep(w.particle) && w.surface < surfaces && is_finite(w.force);
     };
     const auto has_sleeper = [](const Ends& ends) { return ends.first != kNobody || ends.second != kNobody; };
-    return ascend(sleepers_) && ascend(sleep_counters_) &&
-           std::is_sorted(weights_.begin(), weights_.end(), by_particle) &&
-           std::all_of(sleepers_.begin(), sleepers_.end(), is_sleeper_sound) &&
-           std::all_of(weights_.begin(), weights_.end(), is_weight_sound) && contacts_.is_sound(next_id, surfaces) &&
-           std::all_of(ends_.begin(), ends_.end(), has_sleeper);
+    return ascend(sleepers_) && ascend(sleep_counters_) && std::ranges::is_sorted(weights_, by_particle) &&
+           std::ranges::all_of(sleepers_, is_sleeper_sound) && std::ranges::all_of(weights_, is_weight_sound) &&
+           contacts_.is_sound(next_id, surfaces) && std::ranges::all_of(ends_, has_sleeper);
 }
 
 void SleepingIslands::find_slots() {
@@ -61,7 +59,7 @@ std::uint32_t SleepingIslands::sleep_counter(std::uint64_t particle) const {
 
 void SleepingIslands::set_sleep_counters(std::vector<SleepCounter> still) {
     sleep_counters_ = std::move(still);
-    std::sort(sleep_counters_.begin(), sleep_counters_.end(), by_particle);
+    std::ranges::sort(sleep_counters_, by_particle);
 }
 
 void SleepingIslands::add(const std::vector<std::uint64_t>& particles,
@@ -80,10 +78,10 @@ void SleepingIslands::add(const std::vector<std::uint64_t>& particles,
     }
     contacts_.replace(all);
     for (const std::uint64_t particle : particles) sleepers_.push_back({particle, particle});
-    std::sort(sleepers_.begin(), sleepers_.end(), by_particle);
+    std::ranges::sort(sleepers_, by_particle);
     find_slots();
     weights_.insert(weights_.end(), weights.begin(), weights.end());
-    std::stable_sort(weights_.begin(), weights_.end(), by_particle);
+    std::ranges::stable_sort(weights_, by_particle);
     std::vector<ContactKey> joined;
     for (const WarmStartMemory::Entry& entry : contacts_.entries()) joined.push_back(entry.key);
     join(joined);

@@ -59,9 +59,8 @@ void SpawnOccupancy::add(const FlyingBall& ball) {
 
 bool SpawnOccupancy::has_room(const FlyingBall& ball) const {
     const Box3 box = box_of(ball);
-    return std::all_of(levels_.begin(), levels_.end(), [&](const auto& entry) {
-        return has_room_in(entry.second, std::ldexp(1.0, entry.first), ball, box);
-    });
+    return std::ranges::all_of(
+        levels_, [&](const auto& entry) { return has_room_in(entry.second, std::ldexp(1.0, entry.first), ball, box); });
 }
 
 bool SpawnOccupancy::has_room_in(const Level& level, double cell, const FlyingBall& ball, const Box3& box) const {
@@ -84,7 +83,7 @@ bool SpawnOccupancy::has_room_in(const Level& level, double cell, const FlyingBa
 }
 
 bool SpawnOccupancy::overlaps(const std::vector<std::uint32_t>& balls, const FlyingBall& ball) const {
-    return std::any_of(balls.begin(), balls.end(), [&](std::uint32_t k) { return overlap(balls_[k], ball); });
+    return std::ranges::any_of(balls, [&](std::uint32_t k) { return overlap(balls_[k], ball); });
 }
 
 }  // namespace ricochet

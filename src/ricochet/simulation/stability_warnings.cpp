@@ -29,16 +29,16 @@ constexpr int kMostDigits = 17;
 
 /// Returns true if methods that kick first are allowed. They would kick colliding spheres among moving colliders twice.
 bool may_kick_first(const SimulationSetup& setup) {
-    return !setup.options.particle_contacts ||
-           std::none_of(setup.colliders.begin(), setup.colliders.end(),
-                        [](const ColliderDescription& c) { return !c.frame.empty() || is_deforming(c); });
+    return !setup.options.particle_contacts || std::ranges::none_of(setup.colliders, [](const ColliderDescription& c) {
+        return !c.frame.empty() || is_deforming(c);
+    });
 }
 
 bool acts_on_all(const ParticlesForceEntry& entry) { return entry.particles.empty() && entry.emitters.empty(); }
 
 bool acts_on_emitter(const ParticlesForceEntry& entry, std::size_t emitter) {
     const auto& emitters = entry.emitters;
-    return acts_on_all(entry) || std::find(emitters.begin(), emitters.end(), emitter) != emitters.end();
+    return acts_on_all(entry) || std::ranges::find(emitters, emitter) != emitters.end();
 }
 
 /// The two smallest masses of the particles between which a force acts, in kg; infinite if pinned or missing.
@@ -61,7 +61,7 @@ LightestPair lightest_of(const SimulationSetup& setup, const ParticlesForceEntry
     const auto add = [&](const Particle& particle) {
         lightest.add(particle.pinned ? std::numeric_limits<double>::infinity() : particle.mass);
     };
-    if (acts_on_all(entry)) std::for_each(setup.particles.begin(), setup.particles.end(), add);
+    if (acts_on_all(entry)) std::ranges::for_each(setup.particles, add);
     for (const std::uint64_t id : entry.particles) {
         if (id < setup.particles.size()) add(setup.particles[id]);
     }

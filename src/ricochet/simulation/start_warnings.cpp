@@ -106,7 +106,7 @@ std::optional<std::string> sphere_overlap_warning(const Particles& particles, st
         is_inside[pair.first] = is_inside[pair.second] = 1;
     }
     if (!first) return std::nullopt;
-    const auto count = std::count(is_inside.begin(), is_inside.end(), 1);
+    const auto count = std::ranges::count(is_inside, 1);
     born_in_overlap = static_cast<std::uint64_t>(count);
     return fmt::format(
         "{} spheres are born in overlap with others: the first is particle {}, {:.3g} m deep in particle {}; the "

@@ -85,7 +85,8 @@ void archive(Archive& a, const ModuleParts& parts, const ModuleList& modules) {
     ParticleStore& store = parts.population.store();
     expect(a, kStateFormat, "not a state that this version can read");
     expect(a, parts.scene.hash(), "the state belongs to other colliders");
-    expect(a, settings_hash(parts, modules), "the state belongs to other options, materials, bodies, bounds or counters");
+    expect(a, settings_hash(parts, modules),
+           "the state belongs to other options, materials, bodies, bounds or counters");
     expect_count(a, parts.emitters, "the state belongs to other emitters");
     expect_count(a, parts.observers.coupled->springs().springs(), "the state belongs to other springs");
     expect_count(a, store.particles().attributes.columns(), "the state belongs to other attributes");
@@ -154,7 +155,7 @@ void require_sound_state(const ModuleParts& parts, const ModuleList& modules) {
     };
     const auto require = [&](bool sound, const char* fault) { require_none(sound ? nullptr : fault); };
     require(p.size() < kNoSupport, "too many particles");
-    require(std::adjacent_find(p.id.begin(), p.id.end(), std::greater_equal<>()) == p.id.end(),
+    require(std::ranges::adjacent_find(p.id, std::greater_equal<>()) == p.id.end(),
             "particles out of the order of their ids");
     require(p.id.empty() || p.id.back() < parts.population.store().next_id(), "an id above the last one of the run");
     for (std::size_t i = 0; i < p.size(); ++i) require_none(fault_of(parts, modules, i));

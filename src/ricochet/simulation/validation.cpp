@@ -31,7 +31,7 @@ void validate(const SimulationOptions& options) {
                        fmt::format("at most {:g} steps", kMostSteps));
     }
     const auto kinds = response_kinds();
-    if (std::find(kinds.begin(), kinds.end(), options.response) == kinds.end()) {
+    if (std::ranges::find(kinds, options.response) == kinds.end()) {
         subject.refuse("response", static_cast<int>(options.response), "one of the responses");
     }
     if (options.walls != WallRule::slide && options.walls != WallRule::stop) {

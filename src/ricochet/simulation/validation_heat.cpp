@@ -26,9 +26,8 @@ void validate_numbers(const HeatSettings& heat, const Subject& subject) {
 /// Validates the temperature attribute. Returns its column.
 std::size_t validate_attribute(const SimulationSetup& setup, const Subject& subject, const char* why) {
     const auto& all = setup.attributes;
-    const auto found = std::find_if(all.begin(), all.end(), [](const AttributeDescription& column) {
-        return column.name == kTemperatureAttribute;
-    });
+    const auto found = std::ranges::find_if(
+        all, [](const AttributeDescription& column) { return column.name == kTemperatureAttribute; });
     if (found == all.end()) {
         subject.refuse("attributes", "none that is named \"temperature\"",
                        fmt::format("it to be declared: {}, in K", why));
@@ -103,8 +102,8 @@ void validate_heat(const SimulationSetup& setup) {
 }
 
 void validate_thermal_forces(const SimulationSetup& setup) {
-    const bool needs = std::any_of(setup.forces.begin(), setup.forces.end(),
-                                   [](const auto& force) { return force && force->needs_temperature(); });
+    const bool needs =
+        std::ranges::any_of(setup.forces, [](const auto& force) { return force && force->needs_temperature(); });
     if (!needs) return;
     const Subject subject("thermal buoyancy");
     (void)validate_attribute(setup, subject, "the lift goes by it");

@@ -56,8 +56,8 @@ std::string expected_material(const PairContactSettings& contacts) {
 void validate_column(const SimulationSetup& setup, const Subject& subject) {
     const PairContactSettings& contacts = *setup.options.particle_contacts;
     const auto& all = setup.attributes;
-    const auto column = std::find_if(all.begin(), all.end(),
-                                     [](const AttributeDescription& a) { return a.name == kMaterialAttribute; });
+    const auto column =
+        std::ranges::find_if(all, [](const AttributeDescription& a) { return a.name == kMaterialAttribute; });
     if (column == all.end()) {
         subject.refuse("attributes", "none that is named \"material\"",
                        "it to be declared: it says of which of `materials` a particle is");
@@ -119,8 +119,8 @@ void validate_company(const SimulationSetup& setup, const Subject& subject) {
     if (!setup.bodies.empty()) {
         subject.refuse("bodies", setup.bodies.size(), "none that impulses move beside spheres that meet");
     }
-    const bool moves = std::any_of(setup.colliders.begin(), setup.colliders.end(),
-                                   [](const ColliderDescription& c) { return !c.frame.empty() || is_deforming(c); });
+    const bool moves = std::ranges::any_of(
+        setup.colliders, [](const ColliderDescription& c) { return !c.frame.empty() || is_deforming(c); });
     if (moves && kicks_first(setup.options.integrator.kind)) {
         subject.refuse("integrator", name_of(setup.options.integrator.kind),
                        "another integrator if colliders move: this one would apply its kick twice");
@@ -133,8 +133,8 @@ void validate_sphere(const Particle& particle, std::size_t number, const PairCon
                      std::span<const AttributeDescription> columns) {
     if (particle.radius > 0.0) require_mass(Subject("particle", number), particle.mass);
     if (contacts.materials.empty()) return;
-    const auto column = std::find_if(columns.begin(), columns.end(),
-                                     [](const AttributeDescription& a) { return a.name == kMaterialAttribute; });
+    const auto column =
+        std::ranges::find_if(columns, [](const AttributeDescription& a) { return a.name == kMaterialAttribute; });
     const auto k = static_cast<std::size_t>(column - columns.begin());
     if (k >= particle.attributes.size() || is_missing(particle.attributes[k])) return;
     if (is_material(particle.attributes[k], contacts.materials.size())) return;

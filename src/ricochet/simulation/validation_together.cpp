@@ -34,7 +34,7 @@ void validate_particles_forces(const SimulationSetup& setup) {
         }
         for (const std::string& name : entry.force->attributes()) {
             const auto has_name = [&](const AttributeDescription& column) { return column.name == name; };
-            if (std::any_of(setup.attributes.begin(), setup.attributes.end(), has_name)) continue;
+            if (std::ranges::any_of(setup.attributes, has_name)) continue;
             subject.refuse("attribute", name, "the name of one of the setup's attributes");
         }
         if (setup.options.flow) subject.refuse("motion", "a flow that carries the particles", "motion by forces");
@@ -98,7 +98,7 @@ void validate_bodies(const SimulationSetup& setup) {
             return emitter.frames &&
                    setup.frames->description(*frame).name == emitter.frames->description(emitter.frame).name;
         };
-        if (std::any_of(setup.emitters.begin(), setup.emitters.end(), is_on_it)) {
+        if (std::ranges::any_of(setup.emitters, is_on_it)) {
             subject.refuse("emitter", "one in its frame", "none: where it will be within a step is not known");
         }
         if (!setup.springs.empty() || !setup.particles_forces.empty() || setup.solver) {
@@ -107,8 +107,8 @@ void validate_bodies(const SimulationSetup& setup) {
     }
     for (std::size_t k = 0; setup.frames && k < setup.frames->size(); ++k) {
         const FrameDescription& frame = setup.frames->description(k);
-        const auto count = std::count_if(setup.bodies.begin(), setup.bodies.end(),
-                                         [&](const BodyDescription& body) { return body.frame == frame.name; });
+        const auto count =
+            std::ranges::count_if(setup.bodies, [&](const BodyDescription& body) { return body.frame == frame.name; });
         const Subject subject("frame", k, frame.name);
         if (count != (frame.is_driven ? 1 : 0)) subject.refuse("bodies", count, frame.is_driven ? "one" : "none");
         const auto parent = setup.frames->find(frame.parent);
@@ -120,7 +120,7 @@ void validate_bodies(const SimulationSetup& setup) {
 
 /// Refuses parts of a setup that exclude clouds, in which each particle is moved separately, after its parent.
 void validate_clouds(const SimulationSetup& setup) {
-    const auto found = std::find_if(setup.emitters.begin(), setup.emitters.end(), is_cloud);
+    const auto found = std::ranges::find_if(setup.emitters, is_cloud);
     if (found == setup.emitters.end()) return;
     const Subject first("emitter", static_cast<std::size_t>(found - setup.emitters.begin()), found->name);
     const auto refuse = [&](std::string_view what, std::string_view expected) {
@@ -132,7 +132,7 @@ void validate_clouds(const SimulationSetup& setup) {
     if (!setup.springs.empty() || setup.solver) refuse("springs", "one beside particles without springs");
     if (!setup.particles_forces.empty()) refuse("particle_forces", "one beside particles without forces between them");
     if (!setup.bodies.empty()) refuse("bodies", "one beside colliders that impulses do not move");
-    if (std::any_of(setup.colliders.begin(), setup.colliders.end(), is_deforming)) {
+    if (std::ranges::any_of(setup.colliders, is_deforming)) {
         refuse("colliders", "one beside colliders that do not deform");
     }
     for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
@@ -158,7 +158,7 @@ void validate_ranks(const SimulationSetup& setup) {
     if (setup.options.particle_contacts) refuse("particle_contacts", "spheres that meet move together");
     if (!setup.counters.empty()) refuse("counters", "each process counts only its own particles");
     if (!setup.bodies.empty()) refuse("bodies", "the impulses of all particles move a body within a step");
-    if (std::any_of(setup.emitters.begin(), setup.emitters.end(), is_cloud)) {
+    if (std::ranges::any_of(setup.emitters, is_cloud)) {
         refuse("cloud", "children fly along the paths of their parents");
     }
     if (setup.options.response != ResponseKind::exact) refuse("response", "only exact moves each particle by itself");

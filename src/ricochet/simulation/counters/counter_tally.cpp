@@ -16,8 +16,7 @@ CounterTally::CounterTally(std::span<const CounterDescription> counters, bool ha
 void CounterTally::record(const ParticleRange& /*generation*/, const std::vector<BlockRecord>& blocks,
                           std::vector<ColliderLoad>& /*loads*/) {
     std::vector<Passage> passages = joined(blocks, &BlockRecord::passages);
-    std::stable_sort(passages.begin(), passages.end(),
-                     [](const Passage& a, const Passage& b) { return a.particle < b.particle; });
+    std::ranges::stable_sort(passages, [](const Passage& a, const Passage& b) { return a.particle < b.particle; });
     for (const Passage& passage : passages) {
         CounterTotals& totals = totals_[passage.counter];
         ++(passage.is_forward ? totals.forward : totals.backward);
@@ -35,7 +34,7 @@ void CounterTally::add_to_fingerprint(StateHash& hash) const {
 
 const char* CounterTally::fault(double /*time*/) const {
     const auto is_sound = [](double mass) { return mass >= 0.0 && std::isfinite(mass); };
-    const bool all = std::all_of(totals_.begin(), totals_.end(), [&](const CounterTotals& totals) {
+    const bool all = std::ranges::all_of(totals_, [&](const CounterTotals& totals) {
         return is_sound(totals.forward_mass) && is_sound(totals.backward_mass);
     });
     return all ? nullptr : "a counter with a mass out of range";

@@ -95,7 +95,7 @@ PassageFinder::PassageFinder(std::span<const CounterDescription> counters, bool 
     : disks_(counters.begin(), counters.end()), has_pieces_(has_pieces) {}
 
 bool PassageFinder::may_pass(const Vec3& from, const Vec3& to, double margin) const {
-    return std::any_of(disks_.begin(), disks_.end(), [&](const CounterDisk& disk) {
+    return std::ranges::any_of(disks_, [&](const CounterDisk& disk) {
         const double a = disk.height(from);
         const double b = disk.height(to);
         return !(std::min(a, b) > margin) && !(std::max(a, b) < -margin);

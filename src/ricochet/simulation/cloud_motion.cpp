@@ -108,7 +108,7 @@ std::vector<std::vector<std::size_t>> CloudMotion::levels_of(const ParticleRange
         if (has_parent(i) && !store_.is_fixed(i)) all.push_back(i);
     }
     const auto depth = [&](std::size_t i) { return store_.particles().origin[i].generation; };
-    std::ranges::stable_sort(all, [&](std::size_t a, std::size_t b) { return depth(a) < depth(b); });
+    std::ranges::stable_sort(all, {}, depth);
     std::vector<std::vector<std::size_t>> levels;
     for (std::size_t k = 0; k < all.size(); ++k) {
         if (k == 0 || depth(all[k]) != depth(all[k - 1])) levels.emplace_back();

@@ -62,13 +62,10 @@ inline void add_impacts(std::vector<FlightKnot>& knots, std::span<const ContactR
 class RecordsByParticle {
 public:
     explicit RecordsByParticle(std::vector<ContactRecord> records) : records_(std::move(records)) {
-        std::ranges::stable_sort(
-            records_, [](const ContactRecord& a, const ContactRecord& b) { return a.particle < b.particle; });
+        std::ranges::stable_sort(records_, {}, &ContactRecord::particle);
     }
     [[nodiscard]] std::span<const ContactRecord> of(std::uint64_t id) const {
-        const auto first =
-            std::lower_bound(records_.begin(), records_.end(), id,
-                             [](const ContactRecord& record, std::uint64_t key) { return record.particle < key; });
+        const auto first = std::ranges::lower_bound(records_, id, {}, &ContactRecord::particle);
         return {first, std::find_if(first, records_.end(), [&](const auto& record) { return record.particle != id; })};
     }
 

@@ -55,8 +55,7 @@ void FreeFlights::advance_each(std::size_t begin, std::size_t stop, const TimeSp
     const std::optional<Vec3>& common = forces_.common_acceleration();
     for (std::size_t i = begin; i < stop; ++i) {
         if (!schedule_.is_in_free_flight(i)) continue;
-        const FreeFlight flight(integrator_,
-                                common ? *common : forces_.acceleration(store_.force_input(i, step.begin)),
+        const FreeFlight flight(integrator_, common ? *common : forces_.acceleration(store_.force_input(i, step.begin)),
                                 step.end - step.begin);
         const PhaseState end = flight.step(particles.position[i], particles.velocity[i]);
         if (observers_.check != nullptr) {

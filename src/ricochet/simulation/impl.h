@@ -37,8 +37,8 @@ struct Simulation::Impl {
     [[nodiscard]] const Particles& particles() const { return population.particles(); }
     [[nodiscard]] const CoupledMotion& coupled() const { return *modules.observers().coupled; }
     [[nodiscard]] ModuleParts parts() {
-        return {options,    warnings,   clock,           share, scene, *response, recorder,
-                population, emission.emitters(), mover, modules.observers()};
+        return {options, warnings,           clock, share, scene, *response, recorder, population, emission.emitters(),
+                mover,   modules.observers()};
     }
     void restore(const ByteSource& source);
     void wake_all_sleepers();

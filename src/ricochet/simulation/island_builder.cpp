@@ -189,9 +189,8 @@ std::vector<std::vector<std::uint32_t>> IslandBuilder::met_by(const OutOfBoundsM
         std::vector<std::uint32_t> near;
         first_off_plan_grid_.find_near(swept, near);
         for (const std::uint32_t k : near) {
-            const IslandMember* const other = first_out_of_bounds_[k];  // valid only if the member has not been solved
-                                                                        // again
-            if (has_run_anew_[first_numbers_[k]] == 0 && may_have_met(member, *other))
+            // The pointer is valid only if the member has not been solved again.
+            if (has_run_anew_[first_numbers_[k]] == 0 && may_have_met(member, *first_out_of_bounds_[k]))
                 found.push_back(first_numbers_[k]);
         }
     });

@@ -17,9 +17,7 @@ constexpr std::size_t kMostSlots = 2;
 void MemberPairs::collect_numbers(std::span<const IslandMember> members) {
     is_by_particle_ = members.size() >= kMany;
     if (!is_by_particle_) return;
-    const auto [lowest, highest] =
-        std::minmax_element(members.begin(), members.end(),
-                            [](const IslandMember& a, const IslandMember& b) { return a.particle < b.particle; });
+    const auto [lowest, highest] = std::ranges::minmax_element(members, {}, &IslandMember::particle);
     const std::size_t first = lowest->particle;
     const std::size_t slots = highest->particle - first + 1;
     is_by_particle_ = slots <= kMostSlots * members.size();

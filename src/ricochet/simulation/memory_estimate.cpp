@@ -93,11 +93,6 @@ double columns_of(const SimulationSetup& setup) {
     return columns;
 }
 
-bool has_children(const SimulationSetup& setup) {
-    return std::ranges::any_of(setup.emitters,
-                               [](const EmitterDescription& emitter) { return emitter.parent.has_value(); });
-}
-
 /// Collects the memory needs of a setup.
 class Estimator {
 public:
@@ -191,7 +186,7 @@ double MemoryEstimate::bytes() const {
 }
 
 const MemoryNeed& MemoryEstimate::largest() const {
-    return *std::ranges::max_element(needs, [](const MemoryNeed& a, const MemoryNeed& b) { return a.bytes < b.bytes; });
+    return *std::ranges::max_element(needs, {}, &MemoryNeed::bytes);
 }
 
 MemoryEstimate estimate_memory(const SimulationSetup& setup) {

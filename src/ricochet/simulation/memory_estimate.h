@@ -45,6 +45,11 @@ void require_memory(const SimulationSetup& setup);
 /// Returns the bytes of an additional particle in a simulation of this setup.
 [[nodiscard]] double bytes_per_particle(const SimulationSetup& setup);
 
+/// Returns true if particles of a setup can spawn particles.
+[[nodiscard]] inline bool has_children(const SimulationSetup& setup) {
+    return std::ranges::any_of(setup.emitters, [](const EmitterDescription& e) { return e.parent.has_value(); });
+}
+
 /// Returns the number of particles that can be added up to a limit.
 [[nodiscard]] inline std::uint64_t room_below(std::uint64_t most, std::uint64_t living) {
     return most - std::min(most, living);

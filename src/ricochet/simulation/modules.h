@@ -132,8 +132,7 @@ private:
 };
 
 /// Divides the particles of a run between its ranks, moves particles to other ranks to balance the work, and gathers
-/// the run on the first rank. Particles change ranks only after their deferred steps. No other code uses the rank of a
-/// particle.
+/// the run on the first rank. Particles change ranks only after their deferred steps.
 class SharedRun final : public Module {
 public:
     explicit SharedRun(const ModuleParts& parts) : parts_(parts) {}

@@ -24,8 +24,7 @@ struct SimulationOptions : ResponseSettings {
     bool verify = false;
     bool triangle_totals = true;   ///< record hits and impulse per triangle (56 bytes per triangle)
     double frame_rate = 24.0;      ///< frames per second for emission rates per frame, > 0
-    std::uint32_t max_depth = 16;  ///< highest generation of particles spawned by particles; 0: particles spawn no
-                                   ///< particles
+    std::uint32_t max_depth = 16;  ///< highest generation of particles spawned by particles; 0: none are spawned
     /// Largest number of living particles, < 2^32. Births beyond it are refused and counted.
     std::uint64_t most_particles = kDefaultMostParticles;
     /// Contact between spheres, only with the exact response. Without it, spheres pass through each other, as points
@@ -39,8 +38,7 @@ struct AccelerationSwitches {
     bool deferred_steps = true;  ///< steps of free flights are integrated together, see Simulation::advance()
     bool sleeping = true;        ///< particles held at rest by steady forces cost nothing
     bool spatial_order = true;   ///< neighbours in space are queried one after the other
-    bool culling = true;         ///< the broad phase proposes candidates; false: every triangle is a candidate of every
-                                 ///< path
+    bool culling = true;         ///< the broad phase proposes candidates of a path, instead of every triangle
 };
 
 }  // namespace ricochet

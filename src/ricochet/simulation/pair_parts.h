@@ -24,8 +24,7 @@ struct PairParts {
     const CoupledMotion& coupled;
     const PairContactSettings& settings;
     PairMaterials materials;                          ///< materials of the settings
-    std::optional<std::size_t> material_column = {};  ///< column of kMaterialAttribute; empty if all spheres have the
-                                                      ///< same material
+    std::optional<std::size_t> material_column = {};  ///< of kMaterialAttribute; empty if all have one material
 
     /// Returns false if all islands are solved impact by impact.
     [[nodiscard]] bool may_be_contact_island() const { return settings.method != PairMethod::events; }

@@ -49,7 +49,8 @@ std::vector<SupportConstraints> PlannedContacts::find(const ParticleSystem& syst
         const double radius = system.input(k, 0.0, from, {}).radius;
         const auto contact = contact_along(world_, path, radius);
         if (!contact) return;
-        const Flown flown{system.velocities()[k], velocities[k], spins[k], radius, duration, least_compliance * fastest};
+        const Flown flown{system.velocities()[k],    velocities[k], spins[k], radius, duration,
+                          least_compliance * fastest};
         result[k] = find_supports(flown, *contact);
     });
     return result;

@@ -2,8 +2,7 @@
 /// Private to the simulation: the cost of the particles on each rank, and transfers of particles between ranks.
 ///
 /// Work is counted and not measured, so that a repeated run with the same number of ranks has the same particles on
-/// each rank. Results do not depend on the rank of a particle. The position of a birth in the schedules of the emitters
-/// determines its rank. A child lives on the rank of its parent. No other code uses the rank.
+/// each rank. Results do not depend on the rank of a particle. The first rank of a particle: rank_share.h.
 #pragma once
 
 #include <cstddef>

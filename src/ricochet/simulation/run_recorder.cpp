@@ -29,7 +29,7 @@ template <class Entry>
 std::vector<Entry> in_order_of_particles(const std::vector<BlockRecord>& blocks,
                                          std::vector<Entry> BlockRecord::*list) {
     std::vector<Entry> all = joined(blocks, list);
-    std::ranges::stable_sort(all, [](const Entry& a, const Entry& b) { return a.particle < b.particle; });
+    std::ranges::stable_sort(all, {}, &Entry::particle);
     return all;
 }
 

@@ -15,11 +15,6 @@ double chord_margin(const AccelerationSwitches& acceleration, const ForceField& 
     return acceleration.look_ahead && forces.is_uniform() && !is_straight ? kLookAheadMargin : kChordMargin;
 }
 
-bool has_children(const SimulationSetup& setup) {
-    return std::ranges::any_of(setup.emitters,
-                               [](const EmitterDescription& emitter) { return emitter.parent.has_value(); });
-}
-
 bool keeps_origin(const SimulationSetup& setup) {
     const auto asks_for_emitters = [](const ParticlesForceEntry& entry) { return !entry.emitters.empty(); };
     const auto has_curves = [](const EmitterDescription& emitter) { return !emitter.curves.empty(); };

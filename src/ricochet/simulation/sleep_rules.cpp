@@ -54,8 +54,7 @@ bool holds(const ResponseRules& rules, SurfaceId surface, const Vec3& wall_impul
 }
 
 bool may_sleep(const ResponseRules& rules, const ContactIslandMember& member, const TimeSpan& step) {
-    const bool is_acted_on = member.moving->state.coupling != nullptr;  // by springs or forces of other particles,
-                                                                        // which may move
+    const bool is_acted_on = member.moving->state.coupling != nullptr;  // by other particles, which may move
     const bool is_moved = !member.is_fixed && !member.is_pinched && member.duration == step.end - step.begin;
     if (is_acted_on || !is_moved) return false;
     return !is_beside_movers(rules, member.moving->state.position, member.radius);

@@ -122,8 +122,8 @@ private:
     std::unordered_map<std::uint64_t, std::uint32_t> slots_;  // index in sleepers_ by particle
     std::vector<SleepCounter> sleep_counters_;
     std::vector<Weight> weights_;
-    WarmStartMemory contacts_;                                // of sleepers, in the state in which they fell asleep
-    std::vector<Ends> ends_;  // of each contact
+    WarmStartMemory contacts_;  // of sleepers, in the state in which they fell asleep
+    std::vector<Ends> ends_;    // of each contact
     std::vector<WarmStartMemory::Entry> edge_contacts_;
     std::vector<Neighbour> neighbours_;  // particles in contact with sleepers, sleeper by sleeper
     std::vector<std::uint32_t> first_;   // per sleeper: start of its entries in neighbours_; then the end

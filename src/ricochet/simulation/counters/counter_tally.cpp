@@ -16,7 +16,7 @@ CounterTally::CounterTally(std::span<const CounterDescription> counters, bool ha
 void CounterTally::record(const ParticleRange& /*generation*/, const std::vector<BlockRecord>& blocks,
                           std::vector<ColliderLoad>& /*loads*/) {
     std::vector<Passage> passages = joined(blocks, &BlockRecord::passages);
-    std::ranges::stable_sort(passages, [](const Passage& a, const Passage& b) { return a.particle < b.particle; });
+    std::ranges::stable_sort(passages, {}, &Passage::particle);
     for (const Passage& passage : passages) {
         CounterTotals& totals = totals_[passage.counter];
         ++(passage.is_forward ? totals.forward : totals.backward);

@@ -1,4 +1,4 @@
-#include "ricochet/response/turning_slip.h"
+#include "ricochet/response/flat_interval.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "ricochet/geometry/sweep/path.h"
-#include "ricochet/response/flat_interval.h"
 
 namespace ricochet {
 namespace RICOCHET_FILE {

@@ -14,8 +14,8 @@
 namespace ricochet {
 namespace {
 
-/// Largest number of times that a path is halved because it enters a surface from which the flow leads away. Local,
-/// because the result of this search is checked.
+/// Largest number of times that a path is halved because it enters a surface from which the flow leads away. Local: the
+/// result is checked.
 constexpr int kMostHalvings = 40;
 
 /// One particle that a flow carries through one step.
@@ -40,8 +40,7 @@ private:
     [[nodiscard]] bool is_stopped() const {
         return is_stuck_ || (rules_.settings.walls == WallRule::stop && flow_.leads_in(state_.time));
     }
-    /// Returns true if the particle is pressed onto a surface and no time is left to move along it. This happens after
-    /// a landing at the end of the step.
+    /// Returns true if the particle is pressed onto a surface without time left, as after a landing at the step's end.
     [[nodiscard]] bool is_over() const {
         return flow_.is_negligible_path(step_.remaining()) && flow_.leads_in(state_.time);
     }
@@ -122,10 +121,9 @@ void Advector::resolve(const Contact& contact) {
     }
 }
 
-/// Widens reach(), or marks the particle as stuck, after many quick impacts. In a valley with a wide angle, a path that
-/// leaves one face hits the other face far beyond the rim of the first. If a particle alternates between the faces,
-/// reach() grows until the particle touches both at once. If it still alternates at the largest reach, it stays in
-/// place until the end of the step.
+/// Widens reach(), or marks the particle as stuck, after many quick impacts. In a wide valley, a path that leaves one
+/// face hits the other one far beyond the rim of the first. reach() therefore grows until the particle touches both at
+/// once. If it still alternates at the largest reach, it stays until the step's end.
 void Advector::watch_progress() {
     const double elapsed = remaining_at_contact_ - step_.remaining();
     const bool is_quick = quick_contacts_ > 0 && elapsed <= kQuickContact * step_.duration();

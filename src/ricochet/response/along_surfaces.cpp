@@ -10,12 +10,7 @@
 namespace ricochet {
 namespace {
 
-void add_multiple(MotionVector& a, double factor, const MotionVector& b) {
-    for (std::size_t c = 0; c < a.size(); ++c) a[c] += factor * b[c];
-}
-
-/// Changes the components of a motion along given directions to given values, by default 0. Method: modified
-/// Gram-Schmidt, applied twice.
+/// Sets the components of a motion along directions, by default to 0. Method: modified Gram-Schmidt, applied twice.
 class Remover {
 public:
     /// Adds a direction. left_along: required dot product of the direction and the motion after the removal.
@@ -45,8 +40,7 @@ public:
     /// Returns true if the removal sets three consecutive components, starting at `first`, to zero for every motion.
     [[nodiscard]] bool takes_all(std::size_t first) const {
         if (std::any_of(left_.begin(), left_.begin() + count_, [](double left) { return left != 0.0; })) return false;
-        double trace = 0.0;  // trace of the projector onto the directions, over these components; 3 if all three are
-                             // removed
+        double trace = 0.0;  // of the projector onto the directions, over these components; 3 if all are removed
         for (std::size_t k = 0; k < count_; ++k) {
             for (std::size_t c = first; c < first + 3; ++c) trace += basis_[k][c] * basis_[k][c];
         }
@@ -77,6 +71,15 @@ Vec3 carrying_velocity(std::span<const SupportSurface> surfaces, const StuckSurf
 }
 
 }  // namespace
+
+StuckSurfaces sticking_surfaces(const Motion& motion, double radius, std::span<const SupportSurface> surfaces,
+                                double slow) {
+    StuckSurfaces stuck{};
+    for (std::size_t k = 0; k < surfaces.size(); ++k) {
+        stuck[k].to_slip = surfaces[k].friction > 0.0 && length(slip_on(surfaces[k], motion, radius)) <= slow;
+    }
+    return stuck;
+}
 
 double speed_scale(const Motion& motion, double radius, std::span<const SupportSurface> surfaces) {
     double scale = length(motion.velocity) + radius * length(motion.spin);

@@ -1,6 +1,5 @@
 /// \file
-/// Private to the responses: the surfaces that support a particle, and projections of its motion along them. Pure
-/// functions.
+/// The surfaces that support a particle, and projections of its motion along them. Pure functions.
 #pragma once
 
 #include <array>
@@ -23,9 +22,8 @@ struct SupportSurface {
     double friction = 0.0;           ///< Coulomb coefficient
     double rolling_friction = 0.0;   ///< see Material
     double spinning_friction = 0.0;  ///< m, see Material
-    /// Velocity of the surface's material at the contact, along the surface, in m/s, and its angular velocity, in
-    /// rad/s. Slip is relative to the velocity; rolling and spinning are relative to the angular velocity. Both are 0
-    /// if the surface does not grip.
+    /// Velocity of the surface's material at the contact, along the surface, in m/s, for slip, and angular velocity, in
+    /// rad/s, for rolling and spinning. Both are 0 if the surface does not grip.
     Vec3 velocity{};
     Vec3 angular_velocity{};
     const SurfaceMotion* motion = nullptr;  ///< velocity at other positions; null if it is 0 everywhere
@@ -50,6 +48,10 @@ using StuckSurfaces = std::array<Stuck, kMostSupports>;
 [[nodiscard]] inline Vec3 slip_on(const SupportSurface& surface, const Motion& motion, double radius) {
     return slip_velocity(motion, radius, surface.normal) - surface.velocity;
 }
+
+/// Returns the surfaces with friction on which a motion slips no faster than `slow`, in m/s.
+[[nodiscard]] StuckSurfaces sticking_surfaces(const Motion& motion, double radius,
+                                              std::span<const SupportSurface> surfaces, double slow);
 
 /// Returns the sum of the speeds that contribute to slip, rolling and spinning on these surfaces, in m/s. A speed that
 /// is small compared with this sum counts as zero.
@@ -84,9 +86,8 @@ private:
 /// Returns twice the kinetic energy, divided by the mass, of a solid sphere, or a point (radius 0), in m^2/s^2.
 [[nodiscard]] double twice_kinetic(const Motion& motion, double radius);
 
-/// Slows a motion whose twice_kinetic() exceeds `most`, in m^2/s^2. Surfaces add no energy, so such an excess is an
-/// error of the method. An excess within the rounding of positions is ignored. offset: work of the forces over a
-/// contact offset, per unit mass, in m^2/s^2.
+/// Slows a motion whose twice_kinetic() exceeds `most`, in m^2/s^2. Surfaces add no energy, so an excess beyond the
+/// rounding of positions is an error of the method. offset: work of the forces over a contact offset, in m^2/s^2.
 void limit_energy(Motion& motion, double radius, double most, double offset);
 
 }  // namespace ricochet

@@ -18,7 +18,6 @@ const MovingColliders& bodies_of(const ParticleStep& step) { return step.rules()
 double radius_of(const ParticleStep& step) { return step.state().radius; }
 const StoredPosition& stored_of(const ParticleStep& step) { return step.chain().stored(); }
 
-/// Returns the stored position in a body's frame.
 Vec3 stored_position_in(const ParticleStep& step, BodyId body) {
     return bodies_of(step).local_position(body, stored_of(step).position, stored_of(step).time);
 }
@@ -56,9 +55,8 @@ bool carry_with_body(ParticleStep& step, BodyId body, double until) {
     return carry_until(step, carried_position, until, kCarryDepth);
 }
 
-/// Returns the position at time `until` of a particle that a deforming triangle carries. The particle moves with the
-/// nearest point of the triangle and keeps its distance from it. A sphere that overlaps the triangle by rounding is
-/// moved off it.
+/// Returns the position at time `until` of a particle that a deforming triangle carries. It keeps its distance from the
+/// nearest point of the triangle. A sphere that overlaps by rounding is moved off it.
 Vec3 carried_by_triangle(const ParticleStep& step, SurfaceId surface, double until) {
     const Vec3& from = stored_of(step).position;
     const DeformedTriangle now = bodies_of(step).deforming().triangle_at(surface, stored_of(step).time);
@@ -92,8 +90,7 @@ void carry_with_meshes(ParticleStep& step, double until) {
     }
 }
 
-/// Keeps the particle at its position, or carries it with one collider after another. Stops early if surfaces block all
-/// these segments.
+/// Keeps the particle at its position, or carries it with one collider after another, until surfaces block them all.
 void carry_by_turns(ParticleStep& step, double until) {
     constexpr int kMostTurns = 8;
     const BodyId own = step.reference().body();
@@ -138,9 +135,8 @@ bool step_aside(ParticleStep& step, BodyId body, double clearance) {
     return true;
 }
 
-/// Moves the particle to a position with more clearance, and carries it from there. The space beside a rigid collider
-/// does not change with time. But stored positions are rounded in world coordinates, so in a narrow gap a carried
-/// position may lie behind a surface.
+/// Moves the particle to a position with more clearance, and carries it from there. Stored positions are rounded in
+/// world coordinates, so a carried position in a narrow gap may lie behind a surface.
 void carry_with_clearance(ParticleStep& step, double until) {
     for (const double roundings : kCarryingClearances) {
         const auto try_body = [&](BodyId body) {
@@ -173,9 +169,9 @@ bool take_late_segment(ParticleStep& step, const Vec3& position) {
     return true;
 }
 
-/// Moves a stalled particle from its stored time to its current time in one segment. If deforming meshes left no space
-/// for it at some time between, a chain of several segments would be blocked at that time. The new position of the
-/// particle is the stored one, or the position to which a body or a near triangle has carried it.
+/// Moves a stalled particle from its stored time to its current time in one segment. A chain of segments would be
+/// blocked where deforming meshes left no space. The new position is the stored one, or the position to which a body or
+/// a near triangle has carried it.
 bool catch_up_directly(ParticleStep& step) {
     constexpr std::size_t kMostTriangles = 8;
     const MovingColliders& bodies = bodies_of(step);
@@ -187,9 +183,8 @@ bool catch_up_directly(ParticleStep& step) {
     }
     std::vector<SurfaceId> nearest;
     bodies.deforming().nearest_to(stored_of(step).position, stored_of(step).time, kMostTriangles, nearest);
-    return std::any_of(nearest.begin(), nearest.end(), [&](SurfaceId surface) {
-        return take_late_segment(step, carried_by_triangle(step, surface, now));
-    });
+    return std::ranges::any_of(
+        nearest, [&](SurfaceId surface) { return take_late_segment(step, carried_by_triangle(step, surface, now)); });
 }
 
 }  // namespace

@@ -1,14 +1,12 @@
 /// \file
-/// Private to the exact response: a particle that waits among moving colliders. The particle stays at its position or
-/// is carried by a collider, along segments that are free of all colliders.
+/// A particle that waits among moving colliders: at its position, or carried by a collider, along free segments.
 #pragma once
 
 #include "ricochet/response/particle_step.h"
 
 namespace ricochet {
 
-/// Moves the particle to a position in the world in zero time, if the segment to this position is free. Otherwise the
-/// particle stays.
+/// Moves the particle to a position in the world in zero time, unless the segment to it is blocked.
 void shift_to(ParticleStep& step, const Vec3& position);
 
 /// Sets the particle's position and stored time from its chain at the end of a move, if colliders move.

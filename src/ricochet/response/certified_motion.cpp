@@ -11,8 +11,7 @@
 namespace ricochet {
 namespace {
 
-/// Moves a particle off the surface on which it lies, along a segment that is free in all frames. Used if colliders
-/// move.
+/// Moves a particle off the surface on which it lies, along a segment that is free in all frames, if colliders move.
 bool step_off_in_frame(ParticleStep& step, const NearSurfaces& near) {
     ForceInput& state = step.state();
     const auto position = step_off(near, state.position);
@@ -44,8 +43,7 @@ void stop_at_contact(ParticleStep& step, const ContactQuery& query, ContactQuery
 }
 
 /// Stores the control polygon of a path in the chain. Returns false if the polygon is not free. A convex surface blocks
-/// every chord of a point's path along it, and possibly the chords of a small sphere's path. The control polygon lies
-/// outside such a surface.
+/// the chords of a point's or small sphere's path along it, but not the control polygon.
 bool is_polygon_free(const ParticleStep& step, const NearSurfaces& near, const ContactQuery& query) {
     const Path& path = query.path;
     if (query.supports.empty() || path.degree != 3) return false;
@@ -57,8 +55,7 @@ bool is_polygon_free(const ParticleStep& step, const NearSurfaces& near, const C
         const double time = k < 3 ? static_cast<double>(k) / 3.0 * path.duration : path.duration;
         const PathPoint next = near.point_at(outside.point[k], time);
         if (!near.is_free(chain.back().position, next.position)) return false;
-        // In other frames the polygon does not enclose the path, and the query knows only surfaces near the path. So
-        // each segment is tested against all colliders.
+        // In other frames the polygon does not enclose the path, so each segment is tested against all colliders.
         if (const SurfacesInOtherFrames* const others = near.other_frames()) {
             const SurfacesInTime& surfaces = others->surfaces();
             const StoredPosition from = surfaces.stored_position(chain.back());
@@ -97,14 +94,8 @@ void record_chain(ParticleStep& step, const PathClock& clock) {
 
 }  // namespace
 
-double move_certified(ParticleStep& step, const ContactQuery& query, ContactQueryResult& found) {
-    const double elapsed = move_certified_within(step, query, found, step.clock_of(query.path));
-    step.pass(elapsed);
-    return elapsed;
-}
-
-double move_certified_within(ParticleStep& step, const ContactQuery& query, ContactQueryResult& found,
-                             const PathClock& clock) {
+double move_certified(ParticleStep& step, const ContactQuery& query, ContactQueryResult& found,
+                      const PathClock& clock) {
     const Path& path = query.path;
     const NearSurfaces& near = found.near;
     std::optional<Contact>& contact = found.contact;

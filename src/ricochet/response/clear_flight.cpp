@@ -13,12 +13,12 @@ bool may_fly_clear(const ResponseRules& rules, const MovingParticle& particle) {
 }
 
 /// Number of steps for which a search looks for free space. More: a search costs more where space is free. Fewer: more
-/// searches. Local, because only the cost depends on it.
+/// searches. Local: it affects only the cost.
 constexpr double kSearchedSteps = 40.0;
 
-/// Number of steps after which a search is repeated that has found too little free space. Fewer: a particle that flies
-/// along a wall pays for more searches in vain. More: one that leaves a wall pays for more contact queries. Local,
-/// because only the cost depends on it.
+/// Number of steps after which a search that has found too little free space is repeated. Fewer: a particle along a
+/// wall pays for searches in vain. More: one that leaves a wall pays for contact queries. Local: it affects only the
+/// cost.
 constexpr double kStepsBetweenSearches = 6.0;
 
 /// Returns the room beside the triangles, in m, if it exceeds the estimated length of a step, in m; otherwise 0.

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the exact response: the step of a particle that flies far from all surfaces.
+/// The step of a particle that flies far from all surfaces.
 #pragma once
 
 #include <optional>

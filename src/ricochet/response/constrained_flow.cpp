@@ -18,8 +18,8 @@
 namespace ricochet {
 namespace {
 
-/// Number of halvings in the bisection for the time at which the flow turns away from a wall. Local, because the
-/// bisection ends below the rounding of its result.
+/// Number of halvings in the bisection for the time at which the flow turns away from a wall. Local: it ends below
+/// rounding.
 constexpr int kReleaseHalvings = 60;
 
 /// Returns the normal of a round shape at a position, on the same side as the contact's normal.
@@ -60,8 +60,7 @@ public:
     }
 
 private:
-    /// Throws a RunError for a velocity g that is not finite, if the position x is in range. Positions out of range are
-    /// no error, because an integrator may try them.
+    /// Throws a RunError for a velocity g that is not finite at a position x in range. An integrator may try others.
     void refuse_if_in_range(const Vec3& g, const Vec3& x, double time) const {
         if (!is_finite(x) || max_abs(x) > kLargestJudged) return;
         throw RunError(
@@ -84,8 +83,8 @@ private:
 };
 
 /// Returns the angle of the next chord along a curved surface, in rad, after a number of chords in the step. The angle
-/// grows with this number. Otherwise a sphere that rolls round many edges in one step would exhaust its budget: 500
-/// chords of 0.01 rad turn by only 5 rad. With the growing angles, they turn by 50 rad.
+/// grows with this number. Otherwise a sphere that rolls round many edges would exhaust its budget: 500 chords of 0.01
+/// rad turn by 5 rad; with growing angles by 50 rad.
 double chord_angle(int chords) {
     return kMaxChordAngle * static_cast<double>(1 << std::min(chords / kChordsToDouble, kMostChordDoublings));
 }
@@ -129,14 +128,14 @@ bool ConstrainedFlow::leads_in(double time) const {
     const auto normals = manifold_.normals();
     if (normals.empty()) return false;
     const auto is_into = [&](const Vec3& v) {
-        return std::any_of(normals.begin(), normals.end(), [&](const Vec3& normal) { return dot(v, normal) < 0.0; });
+        return std::ranges::any_of(normals, [&](const Vec3& normal) { return dot(v, normal) < 0.0; });
     };
     if (is_into(flow_.velocity(state_.position, time))) return true;
     Path trajectory =
         flow_path(rules_.settings.integrator, flow_, state_.position, time, kShortestRelease * step_, 0.0).path;
     trajectory.c[0] = {};
     const ControlPoints points = trajectory.control_points();
-    return std::any_of(points.begin(), points.end(), is_into);
+    return std::ranges::any_of(points, is_into);
 }
 
 double ConstrainedFlow::time_to_release(double remaining) const {
@@ -215,8 +214,7 @@ std::span<const ContactSurface> ConstrainedFlow::supports(Surfaces& surfaces) co
     return std::span(surfaces).first(holders_.size());
 }
 
-/// Finds the round shapes that an arc can follow. There is no arc if a shape touches at its rim, or if another curved
-/// surface holds the particle.
+/// Finds the round shapes that an arc can follow. None if a shape touches at its rim, or another curved surface holds.
 void ConstrainedFlow::find_followed() {
     followed_count_ = 0;
     for (std::size_t k = 0; k < holders_.size(); ++k) {
@@ -231,8 +229,7 @@ void ConstrainedFlow::find_followed() {
     }
 }
 
-/// Returns an arc up to the time at which a holder releases the particle, or at which the particle reaches the end of a
-/// holder.
+/// Returns an arc up to the time at which a holder releases the particle or ends.
 ConstrainedFlow::Part ConstrainedFlow::arc_until_release(const Path& path) const {
     Part part{path, 0};
     const auto release_at = released_by(part.path.end, state_.time + part.path.duration);
@@ -262,8 +259,7 @@ Path ConstrainedFlow::arc(double duration) const {
     return path;
 }
 
-/// Returns the first holder onto which the flow no longer presses the particle at a position. Also returns a holder
-/// whose rim is at this position.
+/// Returns the first holder onto which the flow does not press the particle at a position, or whose rim is there.
 std::optional<std::size_t> ConstrainedFlow::released_by(const Vec3& position, double time) const {
     std::array<Vec3, kMostSupports> normals;
     for (std::size_t k = 0; k < holders_.size(); ++k) {
@@ -364,8 +360,7 @@ Path ConstrainedFlow::lifted(Path path) const {
 }
 
 /// Shortens a path round an edge or a rim, so that the normal turns by at most chord_angle(). If the surface curves
-/// away from the particle, the path is a tangent. The flow then presses the particle onto the surface again after the
-/// end of the path. If the surface curves towards the particle, the path is a chord.
+/// away from the particle, the path is a tangent. Otherwise it is a chord.
 Path ConstrainedFlow::along_curved(const ContactSurface& support, Path path) {
     const CollisionWorld::Nearest here = geometry_.nearest(support.surface, state_.position);
     const double turning =
@@ -385,8 +380,7 @@ Path ConstrainedFlow::along_curved(const ContactSurface& support, Path path) {
     return path;
 }
 
-/// Returns true if a path makes no progress: it takes a negligible part of the step, and is shorter than the rounding
-/// of positions.
+/// Returns true if a path takes a negligible part of the step and is shorter than the rounding of positions.
 bool ConstrainedFlow::is_no_progress(double duration, const Vec3& velocity) const {
     return !(duration > kNoProgress * step_) && !(length(velocity) * duration > 0.25 * contact_offset(state_.position));
 }

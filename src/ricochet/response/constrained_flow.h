@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: the paths on which a flow carries a particle that touches surfaces.
+/// The paths on which a flow carries a particle that touches surfaces.
 ///
 /// A touched surface is a holder if the flow presses the particle onto it (see normal_accelerations()). A path follows
 /// the flow without its components along the normals of the holders. The path ends when:
@@ -56,15 +56,13 @@ public:
     [[nodiscard]] Vec3 free_velocity() const { return flow_.velocity(state_.position, state_.time); }
     /// Returns the velocity of the flow without its component into the touched surfaces, in m/s.
     [[nodiscard]] Vec3 velocity() const;
-    /// Returns true if the flow at the particle's present position and a given time, in s, presses the particle onto a
-    /// surface. Also returns true if the flow would carry the particle into a surface within the fraction
-    /// kShortestRelease of a step.
+    /// Returns true if the flow at a time, in s, presses the particle onto a surface. Also returns true if it would
+    /// carry the particle into one within the fraction kShortestRelease of a step.
     [[nodiscard]] bool leads_in(double time) const;
     /// Returns the time, in s, until leads_in() becomes false, at most `remaining`.
     [[nodiscard]] double time_to_release(double remaining) const;
 
-    /// Returns true if a path along surfaces for a duration, in s, would be too short to make progress. See
-    /// kNoProgress.
+    /// Returns true if a path of a duration, in s, would make no progress, see kNoProgress.
     [[nodiscard]] bool is_negligible_path(double duration) const;
 
     /// Returns the next path. It lasts at most `duration`, in s, and ends at most `reach`, in m, beyond the rim of a
@@ -76,8 +74,7 @@ public:
     [[nodiscard]] bool is_coarse() const { return is_coarse_; }
     /// Returns true if the last path was along surfaces.
     [[nodiscard]] bool is_held() const { return !holders_.empty(); }
-    /// Returns the round shapes that the last path follows on an arc. The path cannot hit them, see
-    /// ContactQuery::supports.
+    /// Returns the round shapes that the last path follows on an arc, for ContactQuery::supports.
     [[nodiscard]] std::span<const SurfaceId> followed() const { return {followed_.data(), followed_count_}; }
     /// Returns true if, at this time on the path, in s, the path is behind a flat surface that the particle has just
     /// left. Such a cubic dips into the surface although the flow does not.

@@ -1,7 +1,6 @@
 #include "ricochet/response/contact_follower.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "ricochet/core/bisection.h"
@@ -14,13 +13,11 @@ namespace ricochet {
 
 namespace {
 
-/// Largest number of estimates of the time at which an arc reaches the next part of a surface. Each estimate squares a
-/// small error. Three left 1e-11 of the radius for a fast sphere on a long arc. Local: it ends below the rounding of
-/// the result.
+/// Largest number of estimates of the time at which an arc reaches the next part of a surface. Each squares the error;
+/// three left 1e-11 of the radius for a fast sphere. Local: it ends below rounding.
 constexpr int kMostTurningPoints = 8;
 
-/// Largest number of times that an interval is shortened until its middle is the planned one, each time by at least a
-/// fifth. Local, because kSameMiddle decides.
+/// Largest number of times that an interval is shortened, by at least a fifth, until its middle is the planned one.
 constexpr int kMostCuts = 16;
 
 /// Returns true for methods of second order or higher. The others hold forces constant over a step.
@@ -29,7 +26,6 @@ bool follows_varying_forces(IntegratorKind kind) {
            kind == IntegratorKind::dormand_prince;
 }
 
-/// End of an arc.
 struct CurvedEnd {
     double time = 0.0;           ///< s, from its start
     CurvedContact::State state;  ///< at that time
@@ -57,15 +53,13 @@ CurvedEnd end_of(const CurvedContact& arc) {
 
 /// Returns true if the material of one of the surfaces moves by itself and grips, like that of a conveyor belt.
 bool is_any_driven(const ContactManifold& manifold, const SurfaceKinematics& surfaces) {
-    const ContactState touched = manifold.contact_state();
-    return std::any_of(touched.surfaces.begin(), touched.surfaces.begin() + touched.count,
-                       [&](SurfaceId surface) { return surfaces.material_of(surface).drives(); });
+    return std::ranges::any_of(manifold.surfaces(),
+                               [&](SurfaceId surface) { return surfaces.material_of(surface).drives(); });
 }
 
 /// Returns true if the velocity of one of these materials depends on the position, because the material turns.
 bool is_any_turned(const ContactManifold& manifold, const SurfaceKinematics& surfaces) {
-    const ContactState touched = manifold.contact_state();
-    return std::any_of(touched.surfaces.begin(), touched.surfaces.begin() + touched.count, [&](SurfaceId surface) {
+    return std::ranges::any_of(manifold.surfaces(), [&](SurfaceId surface) {
         const Material& material = surfaces.material_of(surface);
         return material.drives() && material.motion.angular_velocity != Vec3{};
     });
@@ -80,17 +74,11 @@ ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration
     step_.note_interval();
     manifold_.drop_left(kLeavingRounding);
     if (manifold_.empty()) return {std::nullopt, true, false};
-    if (goes_nowhere(pull, duration)) {
-        particle().spin = Vec3{};
-        return {std::nullopt, false, true};
-    }
+    if (goes_nowhere(pull, duration)) return rest_with(Vec3{});
     if (!manifold_.is_curved() && !is_any_turned(manifold_, surfaces())) {
         if (const auto slip = plan_turning_slip(pull, duration)) return follow_flat(*slip, pull);
         const ContactInterval interval = plan(pull, duration);
-        if (interval.at_rest) {
-            particle().spin = interval.motion.spin;
-            return {std::nullopt, false, true};
-        }
+        if (interval.at_rest) return rest_with(interval.motion.spin);
         const bool turns = interval.turn > kMostStraightTurn && !interval.is_stiff;
         const PlannedInterval begin{interval, pull.forces};
         const bool varies = pull.acts && forces_vary();
@@ -100,9 +88,13 @@ ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration
     return follow_arc(pull, duration);
 }
 
+ContactFollower::Stop ContactFollower::rest_with(const Vec3& spin) {
+    particle().spin = spin;
+    return {std::nullopt, false, true};
+}
+
 /// Returns true if many consecutive intervals take less time than the clock resolves, at a speed negligible next to the
-/// effect of the forces. This happens from face to face next to a vertex at the origin, where coordinates have no
-/// smallest unit.
+/// effect of the forces. This happens next to a vertex at the origin, where coordinates have no smallest unit.
 bool ContactFollower::goes_nowhere(const Pull& pull, double duration) {
     timeless_ = state().time > clock_ ? 0 : timeless_ + 1;
     clock_ = state().time;
@@ -125,8 +117,7 @@ FlatInterval ContactFollower::plan_by_middle(PlannedInterval begin, double press
     }
 }
 
-/// Returns the forces over the mass, in m/s^2, in the middle of an interval that was planned with the forces at its
-/// start.
+/// Returns the forces over the mass, in m/s^2, in the middle of an interval that the forces at its start determine.
 Vec3 ContactFollower::forces_in_middle(const ContactInterval& interval) const {
     const double half = 0.5 * interval.duration;
     ForceInput middle = state();
@@ -138,7 +129,7 @@ Vec3 ContactFollower::forces_in_middle(const ContactInterval& interval) const {
 
 ContactInterval ContactFollower::plan(const Pull& pull, double duration) {
     const FrictionLimits grip = manifold_.grip(pull.pressure, step_.duration());
-    const ContactInterval interval = plan_interval({state().velocity, particle().spin}, state().radius, pull.forces,
+    const ContactInterval interval = plan_interval(particle().motion(), state().radius, pull.forces,
                                                    manifold_.supports(surfaces()).all(), grip, duration);
     manifold_.load(interval);
     return interval;
@@ -152,7 +143,7 @@ std::optional<FlatInterval> ContactFollower::plan_turning_slip(const Pull& pull,
     const SupportSurface surface = manifold_.supports(surfaces()).surfaces[0];
     const double radius = state().radius;
     if (radius > 0.0 && (surface.rolling_friction > 0.0 || surface.spinning_friction > 0.0)) return std::nullopt;
-    const Motion motion = along_surfaces({state().velocity, particle().spin}, radius, {&surface, 1}, {});
+    const Motion motion = along_surfaces(particle().motion(), radius, {&surface, 1}, {});
     const TurningSlip slip(motion, radius, surface, pull.forces, pull.pressure);
     const double lasts = slip.longest(duration);
     if (!(lasts >= std::min(duration, step_.duration() / kShortestIntervals))) return std::nullopt;
@@ -161,7 +152,6 @@ std::optional<FlatInterval> ContactFollower::plan_turning_slip(const Pull& pull,
     return FlatInterval({interval, pull.forces}, slip);
 }
 
-/// Follows one interval on flat surfaces.
 ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, const Pull& pull) {
     FlatPath trajectory = path_along(flat, flat.duration());
     if (trajectory.path.duration <= 0.0) return {std::nullopt, true, false};
@@ -169,7 +159,7 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
     const double before = step_.remaining();
     const Vec3 turned = flat.motion().velocity - state().velocity;
     const Vec3 from = state().position;
-    const double most = twice_kinetic({state().velocity, particle().spin}, state().radius);
+    const double most = twice_kinetic(particle().motion(), state().radius);
     held_.find();
     std::optional<Contact> contact = move_along(trajectory, flat);
     Stop stop{std::move(contact), trajectory.leaves_surface, false};
@@ -183,19 +173,16 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
         limit_energy(motion, state().radius, most + 2.0 * work,
                      length(forces) * step_.geometry().contact_offset(state().position));
     }
-    // Includes the velocity of a slip that ends. Friction turns while a slip ends, so the accelerations do not remove
-    // all of it.
+    // Includes the velocity of a slip that ends, because the accelerations do not remove all of it.
     const Vec3 stopped = motion.velocity - state().velocity;
     manifold_.record_impulse(turned + elapsed * (interval.acceleration - forces) + stopped, elapsed, ledger());
-    state().velocity = motion.velocity;
-    particle().spin = motion.spin;
+    particle().set_motion(motion);
     step_.log().note_contact(pull.forces, trajectory.path, pull.acts, held_.all());
     held_.meet(stop.contact);
     return stop;
 }
 
-/// Moves the particle along a path on flat surfaces. If that leads to a contact and friction turns, the path up to the
-/// contact is refined.
+/// Moves the particle along a path on flat surfaces. If friction turns, refines the path up to a contact.
 std::optional<Contact> ContactFollower::move_along(FlatPath& trajectory, const FlatInterval& flat) {
     RefinementBudget looks;
     const auto closer = [&](double time, const Path& tried) -> std::optional<Path> {
@@ -209,8 +196,7 @@ std::optional<Contact> ContactFollower::move_along(FlatPath& trajectory, const F
     return follow_path(step_, trajectory.path, held_.all(), closer);
 }
 
-/// Returns the path of the first `time` seconds of an interval, up to the end of a surface. The path's end keeps the
-/// contact offset.
+/// Returns the path of the first `time` seconds of an interval, up to the end of a surface, at the contact offset.
 ContactFollower::FlatPath ContactFollower::path_along(const FlatInterval& interval, double time) const {
     Path path = interval.path(state().position, time);
     if (!is_finite(path.end)) return {path, false};
@@ -247,27 +233,19 @@ void ContactFollower::keep_offset(Path& path, const FlatInterval& interval) cons
     path.end = flush_tiny(path.end + shift.vector());
 }
 
-/// Follows one curved contact.
 ContactFollower::Stop ContactFollower::follow_arc(const Pull& pull, double duration) {
     held_.find();
     const ContactManifold::SupportList materials = manifold_.supports(surfaces());
     const FrictionLimits grip = manifold_.grip(pull.pressure, step_.duration());
     const CurvedContact arc(step_.geometry(), rules().forces, state(), manifold_, materials,
-                            {particle().spin, grip.pressure, pull.acts, grip.shortest, grip.negligible_path, duration,
-                             tolerance(), rules().frame});
-    if (arc.plan().at_rest) {
-        particle().spin = arc.plan().motion.spin;
-        return {std::nullopt, false, true};
-    }
+                            {particle().spin, grip, pull.acts, duration, tolerance(), rules().frame});
+    if (arc.plan().at_rest) return rest_with(arc.plan().motion.spin);
     std::optional<CurvedPath> trajectory = path_along(arc);
     if (!trajectory) return {std::nullopt, true, false};
     const Vec3& from = state().position;
     const bool is_short =
         length(trajectory->end.position - from) <= kTouchingOffsets * step_.geometry().contact_offset(from);
-    if (trajectory->jams && (is_short || !(trajectory->path.duration > 0.0))) {
-        particle().spin = Vec3{};
-        return {std::nullopt, false, true};
-    }
+    if (trajectory->jams && (is_short || !(trajectory->path.duration > 0.0))) return rest_with(Vec3{});
     step_.log().note_impact();
     const double before = step_.remaining();
     const Vec3 velocity_before = state().velocity;
@@ -284,8 +262,7 @@ ContactFollower::Stop ContactFollower::follow_arc(const Pull& pull, double durat
     return stop;
 }
 
-/// Returns the path of an arc, up to the time at which nothing holds the particle, or another part of a surface begins.
-/// Returns std::nullopt if that happens at once.
+/// Returns the path of an arc until nothing holds the particle or another part of a surface begins, if not at once.
 std::optional<ContactFollower::CurvedPath> ContactFollower::path_along(const CurvedContact& arc) const {
     if (!arc.is_supported()) return std::nullopt;
     CurvedPath trajectory;
@@ -303,8 +280,7 @@ std::optional<ContactFollower::CurvedPath> ContactFollower::path_along(const Cur
 /// Shortens a trajectory to the start of another part of a surface.
 void ContactFollower::keep_to_pieces(const CurvedContact& arc, CurvedPath& trajectory) const {
     trajectory.turning_point = trajectory.path.end;
-    // Between its ends, a long path only approximates its arc. A part of a surface may end so late there that the next
-    // part is overlapped.
+    // A long path only approximates its arc, so a part of a surface may end so late that the next one is overlapped.
     for (int k = 0; k < kMostTurningPoints && (k == 0 || held_.overlaps(trajectory.path.end)); ++k) {
         const double on = time_on_pieces(trajectory.path);
         if (!(on < trajectory.path.duration)) break;
@@ -351,8 +327,7 @@ std::optional<Contact> ContactFollower::move_along(CurvedPath& trajectory, const
     };
     const std::optional<Contact> contact = follow_path(step_, trajectory.path, held_.all(), closer);
     const Motion motion = contact ? arc.at(contact->time).motion : trajectory.jams ? Motion{} : trajectory.end.motion;
-    state().velocity = motion.velocity;
-    particle().spin = motion.spin;
+    particle().set_motion(motion);
     return contact;
 }
 
@@ -364,8 +339,8 @@ bool ContactFollower::forces_vary() const {
     return follows && !rules().forces.is_uniform_for(state());
 }
 
-/// Returns true if varying forces require an integrated arc, for its energy or its tolerance. A moving frame requires
-/// it for its effect on spins.
+/// Returns true if varying forces require an integrated arc: for energy, tolerance, or a moving frame's effect on
+/// spins.
 bool ContactFollower::needs_arc() const {
     return step_.reference().is_moving() || tolerance() || rules().forces.is_conservative_for(state());
 }

@@ -1,11 +1,10 @@
 /// \file
-/// Private to the exact response: motion of a particle along surfaces that hold it, one contact interval at a time.
+/// Motion of a particle along surfaces that hold it, one contact interval at a time.
 #pragma once
 
 #include <limits>
 #include <optional>
 
-#include "ricochet/collision/contact_scratch.h"
 #include "ricochet/response/contact_interval.h"
 #include "ricochet/response/contact_manifold.h"
 #include "ricochet/response/curved_contact.h"
@@ -44,12 +43,10 @@ public:
     void join_impact(Contact& contact) const { held_.join_impact(contact); }
 
 private:
-    /// Path of a contact interval on flat surfaces.
     struct FlatPath {
         Path path;
         bool leaves_surface = false;  ///< the surface ends at the path's end, before the interval does
     };
-    /// Path of a curved contact.
     struct CurvedPath {
         Path path;  ///< a cubic; between its ends it only approximates the arc
         CurvedContact::State end;
@@ -58,6 +55,7 @@ private:
         bool jams = false;            ///< the particle is stuck at the end
     };
 
+    [[nodiscard]] Stop rest_with(const Vec3& spin);
     [[nodiscard]] bool goes_nowhere(const Pull& pull, double duration);
     [[nodiscard]] bool forces_vary() const;
     [[nodiscard]] bool needs_arc() const;

@@ -12,7 +12,7 @@ namespace ricochet {
 namespace {
 
 /// Largest number of consecutive plans for one interval. Another plan is made if a motion stops at once. The last plan
-/// is always accepted. Local, because the next interval continues from the end of this plan.
+/// is always accepted. Local: the next interval goes on.
 constexpr int kMostPlans = 4;
 
 /// A resistance at a surface, and the motion that it resists.
@@ -40,14 +40,14 @@ Vec3 turned_with(const Vec3& v, const Vec3& from, const Vec3& to) {
 
 /// Returns true if no surface moves. Between moving surfaces a particle may be drawn in, and its slip need not stop.
 bool are_at_rest(std::span<const SupportSurface> surfaces) {
-    return std::all_of(surfaces.begin(), surfaces.end(), [](const SupportSurface& surface) {
+    return std::ranges::all_of(surfaces, [](const SupportSurface& surface) {
         return surface.velocity == Vec3{} && surface.angular_velocity == Vec3{} && surface.motion == nullptr;
     });
 }
 
 /// One plan: the forces on a moving particle, and the time for which they are constant. seen: the surfaces at the
-/// start, along which the given motion leads. surfaces: the same surfaces at the time for which forces are computed;
-/// their normals may have turned.
+/// start, along which the given motion leads. surfaces: the same surfaces, with normals at the time for which forces
+/// are computed.
 class Plan {
 public:
     Plan(const Motion& motion, double radius, const Vec3& a, std::span<const SupportSurface> seen,
@@ -76,8 +76,8 @@ public:
         return interval;
     }
 
-    /// Returns true if a resistance sticks although its motion has not completely stopped. The resistance must not do
-    /// work on this remaining motion.
+    /// Returns true if a resistance sticks although its motion has not quite stopped. It must not do work on this
+    /// motion.
     [[nodiscard]] bool drags(const ContactInterval& interval) const {
         return std::any_of(resistances_.begin(), resistances_.begin() + count_, [&](const Resistance& r) {
             StuckSurfaces stuck = interval.stuck;
@@ -95,8 +95,8 @@ private:
     /// Returns true if the particle jams at the start, or in the middle of the interval.
     [[nodiscard]] bool jams() const { return jams_ || jams_in_middle_; }
 
-    /// Returns an interval in which all slip stops at once. No force satisfies the law of friction, only an impulse
-    /// does (Stewart 2000).
+    /// Returns an interval in which all slip stops at once: only an impulse satisfies the law of friction (Stewart
+    /// 2000).
     [[nodiscard]] ContactInterval jammed() const {
         ContactInterval interval{motion_, acceleration_, spin_acceleration_, 0.0, false, 0.0, false, reactions_, {}};
         for (const Resistance& r : std::span(resistances_).first(count_))
@@ -144,8 +144,7 @@ private:
         return {normal_direction(surface.normal), dot(a_, surface.normal) + surface.curvature};
     }
 
-    /// Returns the closed form for a single surface without resistance to rolling and spinning. Returns std::nullopt
-    /// for other surfaces.
+    /// Returns the closed form, if there is a single surface without resistance to rolling and spinning.
     [[nodiscard]] std::optional<SingleContactForces> forces_of_single_surface() const {
         if (surfaces_.size() != 1 || count_ > 1) return std::nullopt;
         if (count_ == 0) return solve_single_contact(contact(surfaces_[0]), nullptr, grip_.pressure);
@@ -159,8 +158,7 @@ private:
         for (const SupportSurface& surface : surfaces_) problem.add(contact(surface));
         for (const Resistance& r : resistances()) problem.add(resistance(r));
         // Only a sliding particle can jam. For a particle at rest, a solution always exists.
-        const bool slides =
-            std::any_of(resistances().begin(), resistances().end(), [](const Resistance& r) { return r.speed > 0.0; });
+        const bool slides = std::ranges::any_of(resistances(), [](const Resistance& r) { return r.speed > 0.0; });
         const auto effort = slides ? CoulombProblem::Effort::some : CoulombProblem::Effort::all;
         const double part = problem.solve_with_most(effort, grip_.pressure);
         const bool jams = slides && part < kJammingFriction && are_at_rest(surfaces_);
@@ -177,8 +175,7 @@ private:
         accept(change);
     }
 
-    /// Sets the accelerations from a change of the motion. A change within rounding does not set a resting particle in
-    /// motion.
+    /// Sets the accelerations from a change of the motion. Rounding does not set a resting particle in motion.
     void accept(const MotionVector& change) {
         if (motion_.velocity == Vec3{} && length(acceleration_) <= kSupportRounding * scale()) acceleration_ = {};
         if (is_sphere()) spin_acceleration_ = (kTurning / radius_) * turning_of(change);
@@ -194,9 +191,8 @@ private:
         acceleration_ += lift.vector();
     }
 
-    /// Returns the equation of a resistance. The resistance opposes the direction of the motion at the start. For
-    /// solve_for_middle(), it opposes the motion in the middle of the interval instead. Without motion, the resistance
-    /// opposes the rate that the forces and the surfaces' curvature would cause.
+    /// Returns the equation of a resistance. It opposes the motion at the start, or for solve_for_middle() in the
+    /// middle of the interval. Without motion, it opposes the rate that forces and curvature would cause.
     [[nodiscard]] CoulombResistance resistance(const Resistance& r) const {
         CoulombResistance result = at_rest(r);
         const bool is_implicit = weight_ > 0.0 && r.speed > 0.0;
@@ -276,8 +272,7 @@ private:
         return duration;
     }
 
-    /// Returns the time, in s, until some resisted motion has changed by kMaxSlipChange of its speed. The result is at
-    /// least FrictionLimits::shortest.
+    /// Returns the time, in s, until a resisted motion changes by kMaxSlipChange, at least FrictionLimits::shortest.
     [[nodiscard]] double time_to_change() {
         double duration = duration_;
         for (const Resistance& r : resistances()) {
@@ -304,7 +299,7 @@ private:
     /// Returns true if friction could stop a motion within the fraction 1 / kStageLimit of the duration, in s. An
     /// explicit Runge-Kutta step would then be unstable.
     [[nodiscard]] bool is_stiff(double duration) {
-        return std::any_of(resistances().begin(), resistances().end(), [&](const Resistance& r) {
+        return std::ranges::any_of(resistances(), [&](const Resistance& r) {
             const SupportSurface& surface = surfaces_[r.surface];
             const double pressing = grip_.pressure * dot(reactions_[r.surface], surface.normal);
             const double most = r.kind == Kind::slip ? kSlipAcceleration * surface.friction * pressing
@@ -315,9 +310,9 @@ private:
         });
     }
 
-    /// Sets the directions of friction to those in the middle of the interval. These directions depend on friction
-    /// itself. The rule is therefore implicit (midpoint rule), because a slow slip can turn in no time. If a motion
-    /// would stop before the end, the middle of the time until it stops is used.
+    /// Sets the directions of friction to those in the middle of the interval. The rule is implicit (midpoint rule),
+    /// because a slow slip can turn in no time. If a motion stops before the end, the middle of the time until then is
+    /// used.
     void solve_for_middle(double duration) {
         for (const Resistance& r : resistances()) {
             if (r.speed == 0.0) continue;
@@ -329,8 +324,7 @@ private:
         weight_ = 0.0;
         for (Resistance& r : resistances()) {
             const Vec3 middle = r.rate + (0.5 * duration) * change_of(r);
-            // A motion that has stopped by the middle has no direction there. Its resistance keeps the direction at the
-            // start.
+            // A motion that has stopped by the middle has no direction there, and keeps that at the start.
             if (r.speed > 0.0 && length(middle) > kSlowSlip * r.speed) r.heading = normalized(middle);
         }
     }
@@ -357,8 +351,7 @@ private:
             const bool is_soon_over = left < kMostHeadingTurn * r.speed &&
                                       (left <= rounding || left * interval.duration <= grip_.negligible_path);
             sticks = left <= kStopRounding * r.speed || is_soon_over;
-            // Other motions may continue. The next plan, without this very short slip, shows which surfaces support the
-            // particle afterwards.
+            // The next plan, without this very short slip, shows which surfaces support the particle afterwards.
             if (sticks && r.speed * interval.duration <= grip_.negligible_path) interval.ends_at_once = true;
         }
     }
@@ -377,14 +370,12 @@ private:
     Vec3 spin_acceleration_;
     bool jams_ = false;  // the sliding motion has a solution only with less than full friction
     bool jams_in_middle_ = false;
-    // Factor, in 1/s, on the initial motions in the rates that friction opposes. 0: friction opposes the directions of
-    // the initial motions.
+    // Factor, in 1/s, on the initial motions in the rates that friction opposes. 0: it opposes the initial motions.
     double weight_ = 0.0;
 };
 
 /// Returns true if the motion is negligible compared with the velocity that the forces can cause in the duration, in s.
-/// A jammed particle is put at rest if it would rest without this motion. Otherwise each interval would remove only a
-/// fraction of the remaining motion, and the particle would never come to rest.
+/// A jammed particle then stops. Otherwise each interval would remove only a fraction of the motion.
 bool hardly_moves(const Motion& motion, double radius, const Vec3& a, double duration) {
     const double speed = length(motion.velocity) + radius * length(motion.spin);
     return motion.velocity != Vec3{} && speed <= kNegligibleSpeed * length(a) * duration;

@@ -1,6 +1,6 @@
 /// \file
-/// Private to the responses: lasting contact as intervals of constant acceleration. A particle rests, slides, rolls and
-/// spins on any number of surfaces at once, as one contact problem (coulomb_problem.h). Pure functions.
+/// Lasting contact as intervals of constant acceleration. A particle rests, slides, rolls and spins on any number of
+/// surfaces at once, as one contact problem (coulomb_problem.h). Pure functions.
 #pragma once
 
 #include <array>
@@ -12,12 +12,10 @@
 
 namespace ricochet {
 
-/// Largest rate of decay times step for which the Runge-Kutta method is used. Local, because it follows from the
-/// stability bound of the method, 2.78.
+/// Largest rate of decay times step of a Runge-Kutta step. Local: from the stability bound of the method, 2.78.
 inline constexpr double kStageLimit = 2.5;
 
-/// Ratio of the rate of change of a sphere's slip to the acceleration of its centre, both by friction. A mathematical
-/// constant.
+/// Rate of change of a sphere's slip over the acceleration of its centre, both by friction. A mathematical constant.
 inline constexpr double kSlipAcceleration = 3.5;
 
 /// One interval of contact with constant acceleration along the surfaces.
@@ -48,19 +46,18 @@ struct FrictionLimits {
 
 /// Plans the contact of a particle under acceleration a with surfaces that hold it, with constant normals, for at most
 /// `duration`, in s. At most kMostSupports surfaces count. The interval ends when slip, rolling or spinning stops on
-/// one of them. It also ends before the direction of friction has turned by kMaxHeadingTurn. If friction turns very
-/// fast, the limit is kMostHeadingTurn. Friction has the direction that it has in the middle of the interval. If no
-/// friction force exists for a slip on surfaces at rest, the particle jams: its slip stops at once. With a duration of
-/// 0, only the forces are computed. stuck: surfaces on which slip or rotation counts as zero, because it is an error of
-/// the given motion.
+/// one of them, and before the direction of friction has turned by kMaxHeadingTurn (kMostHeadingTurn if it turns very
+/// fast). Friction has its direction in the middle of the interval. If no friction force exists for a slip on surfaces
+/// at rest, the particle jams: its slip stops at once. With a duration of 0, only the forces are computed. stuck:
+/// surfaces on which slip or rotation counts as zero, because it is an error of the given motion.
 [[nodiscard]] ContactInterval plan_interval(const Motion& motion, double radius, const Vec3& a,
                                             std::span<const SupportSurface> surfaces, const FrictionLimits& grip,
                                             double duration, const StuckSurfaces& stuck = {});
 
-/// Tests whether a motion just after impacts differs from rest only by rounding, and returns the motion at rest. The
-/// velocity, and the rotation about tangents that belongs to it, must be negligible. They are compared with the
-/// velocity that the forces can cause in the duration, in s. The result keeps the spin about the normal. Returns
-/// std::nullopt if surfaces move, or if the particle would not stay at rest.
+/// Returns the motion at rest if a motion just after impacts differs from rest only by rounding. Its velocity and
+/// rotation about tangents must be negligible next to the velocity that the forces can cause in the duration, in s. The
+/// result keeps the spin about the normal. Returns std::nullopt if surfaces move, or if the particle would not stay at
+/// rest.
 [[nodiscard]] std::optional<Motion> rest_beside_rounding(const Motion& motion, double radius, const Vec3& a,
                                                          std::span<const SupportSurface> surfaces,
                                                          const FrictionLimits& grip, double duration);
@@ -74,8 +71,7 @@ struct FrictionLimits {
                                                       const FrictionLimits& grip, double duration);
 
 /// Returns the motion after `elapsed`, in s, of an interval. velocity: velocity of the path at that time. is_over: the
-/// interval has reached its end, so slip that ends with it is exactly zero. The caller passes this flag, because
-/// `elapsed` may be a rounded difference.
+/// interval has reached its end (`elapsed` may be rounded), so slip that ends with it is exactly zero.
 [[nodiscard]] Motion motion_after(const ContactInterval& interval, double elapsed, bool is_over, const Vec3& velocity,
                                   double radius, std::span<const SupportSurface> surfaces);
 

@@ -10,17 +10,6 @@
 #include "ricochet/response/surface_kinematics.h"
 
 namespace ricochet {
-namespace {
-
-/// Returns one minus the cosine of the largest angle between the normals of an edge and of a face that a particle
-/// touches at once.
-double seam_turn(const SurfaceGeometry& geometry, const ForceInput& particle) {
-    if (particle.radius == 0.0) return kSameNormal;
-    return kSeamTurn + 2.0 * kTouchingOffsets * geometry.contact_offset(particle.position) / particle.radius;
-}
-
-}  // namespace
-
 TouchRule TouchRule::at(const SurfaceGeometry& geometry, const Vec3& position) {
     const double reach = kTouchingOffsets * geometry.contact_offset(position);
     return {reach, reach, reach};
@@ -28,7 +17,8 @@ TouchRule TouchRule::at(const SurfaceGeometry& geometry, const Vec3& position) {
 
 bool ContactManifold::is_same_point(const ContactSurface& known, const ContactSurface& surface) const {
     const double turn = 1.0 - dot(known.normal, surface.normal);
-    return !(turn > kSameNormal) || (known.flat != surface.flat && turn <= seam_turn(geometry_, particle_));
+    return !(turn > kSameNormal) || (known.flat != surface.flat &&
+                                     turn <= seam_turn(particle_.radius, geometry_.contact_offset(particle_.position)));
 }
 
 void ContactManifold::add(const ContactSurface& surface) {
@@ -96,8 +86,7 @@ void ContactManifold::replace(std::span<const ContactSurface> surfaces, const To
     for (const ContactSurface& surface : candidates) add(surface);
 }
 
-/// Adds the first set of candidates that leaves no component of `pull` into any candidate. The set has as few members
-/// as possible, at most three.
+/// Adds the first of the smallest sets of candidates, at most three, that leave no component of `pull` into any.
 void ContactManifold::add_supports(std::span<const ContactSurface> candidates, const Vec3& pull) {
     const double rounding = kProjectionRounding * length(pull);
     std::array<Vec3, kMostPoints> normals;
@@ -105,9 +94,8 @@ void ContactManifold::add_supports(std::span<const ContactSurface> candidates, c
         std::size_t count = 0;
         for (const std::size_t k : chosen) normals[count++] = candidates[k].normal;
         const Vec3 left = project_off(pull, std::span(normals).first(count));
-        const bool enough = std::all_of(candidates.begin(), candidates.end(), [&](const ContactSurface& surface) {
-            return dot(left, surface.normal) >= -rounding;
-        });
+        const bool enough = std::ranges::all_of(
+            candidates, [&](const ContactSurface& surface) { return dot(left, surface.normal) >= -rounding; });
         for (const std::size_t k : chosen) {
             if (enough) add(candidates[k]);
         }
@@ -147,7 +135,8 @@ void ContactManifold::drop_left(double part) {
 
 std::optional<std::size_t> ContactManifold::point_of(const Vec3& normal) const {
     for (std::size_t k = 0; k < count_; ++k) {
-        if (1.0 - dot(normals_[k], normal) <= seam_turn(geometry_, particle_)) return k;
+        if (1.0 - dot(normals_[k], normal) <= seam_turn(particle_.radius, geometry_.contact_offset(particle_.position)))
+            return k;
     }
     return std::nullopt;
 }

@@ -1,6 +1,5 @@
 /// \file
-/// Private to the responses: the contact manifold, which consists of the surfaces that a particle touches at one time,
-/// and their loads.
+/// The contact manifold: the surfaces that a particle touches at one time, and their loads.
 #pragma once
 
 #include <algorithm>
@@ -18,6 +17,12 @@ namespace ricochet {
 
 class ImpulseLedger;
 class SurfaceKinematics;
+
+/// Returns one minus the cosine of the largest angle between the normals of an edge and of a face that a particle
+/// touches at once. offset: contact offset, in m.
+[[nodiscard]] inline double seam_turn(double radius, double offset) {
+    return radius == 0.0 ? kSameNormal : kSeamTurn + 2.0 * kTouchingOffsets * offset / radius;
+}
 
 /// Rule for when a particle touches a surface.
 struct TouchRule {
@@ -37,7 +42,7 @@ public:
     /// Adds a surface, in place of the oldest one if the list is full. Does nothing if the list contains the surface.
     void add(SurfaceId surface) {
         const std::span<const SurfaceId> known = all();
-        if (std::find(known.begin(), known.end(), surface) == known.end()) surfaces_[count_++ % kMost] = surface;
+        if (std::ranges::find(known, surface) == known.end()) surfaces_[count_++ % kMost] = surface;
     }
     [[nodiscard]] std::span<const SurfaceId> all() const { return {surfaces_.data(), std::min(count_, kMost)}; }
 
@@ -48,9 +53,9 @@ private:
     std::size_t count_ = 0;  // number of surfaces ever added
 };
 
-/// The contact points of one particle, at most three. More points would not restrict the motion of a pressed particle
-/// further. An edge whose normal is close to that of a touched face counts as a seam of the face, not as a contact
-/// point. Seams inside a flat surface must have no effect.
+/// The contact points of one particle, at most three. More would not restrict the motion of a pressed particle further.
+/// An edge with nearly the normal of a touched face is a seam, not a contact point, because seams inside a flat surface
+/// must have no effect.
 class ContactManifold {
 public:
     /// Both arguments must outlive the manifold, which always uses the particle's present position and velocity.
@@ -61,6 +66,7 @@ public:
     [[nodiscard]] bool empty() const { return count_ == 0; }
     /// Returns contact point k. Requires k < size().
     [[nodiscard]] ContactSurface operator[](std::size_t k) const { return {surfaces_[k], normals_[k], flat_[k]}; }
+    [[nodiscard]] std::span<const SurfaceId> surfaces() const { return {surfaces_.data(), count_}; }
     [[nodiscard]] std::span<const Vec3> normals() const { return {normals_.data(), count_}; }
     /// Returns true if one of the surfaces is curved.
     [[nodiscard]] bool is_curved() const {
@@ -71,8 +77,7 @@ public:
     /// Restores the surfaces of the last step, without normals: touch_again() must follow.
     void recall(const ContactState& contact_state);
 
-    /// Adds a contact point, unless the manifold has one with the same normal. A seam is not added if the manifold
-    /// contains its face; a face replaces its seam.
+    /// Adds a contact point, unless the manifold has one with the same normal. A face replaces its seam.
     void add(const ContactSurface& surface);
     void clear();
     void remove(std::size_t k);
@@ -87,8 +92,8 @@ public:
     void remember(std::span<const ContactSurface> surfaces);
     /// Replaces the contact points by the surfaces of an impact, followed by recent surfaces that are still touched.
     void replace(std::span<const ContactSurface> surfaces, const TouchRule& rule);
-    /// Does the same. If there are more than three surfaces, it first adds surfaces that together leave no component of
-    /// the acceleration `pull` into any surface.
+    /// Does the same. If there are more than three surfaces, prefers a set that leaves no component of `pull` into any
+    /// of them. pull: acceleration, in m/s^2.
     void replace(std::span<const ContactSurface> surfaces, const TouchRule& rule, const Vec3& pull);
     /// Replaces the contact points by the given contacts that are still touched, with their present normals.
     void touch_again(const ContactState& contact_state, const TouchRule& rule);
@@ -99,7 +104,7 @@ public:
     void load(const Vec3& pull);
     void unload() { loads_ = {}; }
     [[nodiscard]] bool is_loaded() const {
-        return std::any_of(loads_.begin(), loads_.end(), [](const Vec3& load) { return load != Vec3{}; });
+        return std::ranges::any_of(loads_, [](const Vec3& load) { return load != Vec3{}; });
     }
     /// Sets the loads to the reactions of an interval.
     void load(const ContactInterval& interval);

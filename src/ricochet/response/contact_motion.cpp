@@ -14,8 +14,7 @@ DoubleDouble squared_length(const Vec3& v) {
 }
 
 bool approaches_none(const Vec3& w, std::span<const Vec3> normals, double scale) {
-    return std::all_of(normals.begin(), normals.end(),
-                       [&](const Vec3& n) { return dot(w, n) >= -kProjectionRounding * scale; });
+    return std::ranges::all_of(normals, [&](const Vec3& n) { return dot(w, n) >= -kProjectionRounding * scale; });
 }
 
 /// Constants of a solid sphere. The tangential impulse that stops the slip is 2/7 of the slip momentum. The spin
@@ -102,8 +101,8 @@ Motion bounce(const Motion& motion, double radius, const Vec3& n, double restitu
 }
 
 Vec3 cosine_direction(const Vec3& n, RandomSequence& random) {
-    // Uniform on the disk, projected up to the hemisphere (Malley's method, e.g. Pharr, Jakob, Humphreys, "Physically
-    // Based Rendering").
+    // Malley's method: uniform on the disk, projected up to the hemisphere (Pharr, Jakob, Humphreys, "Physically Based
+    // Rendering").
     const Vec3 disk = random.in_unit_disk();
     const auto [t, b] = tangent_frame(n);
     const double height = std::sqrt(std::max(0.0, 1.0 - disk.x * disk.x - disk.y * disk.y));
@@ -147,8 +146,7 @@ Vec3 project_off(const Vec3& v, std::span<const Vec3> normals) {
     return best;
 }
 
-// r lies in the cone of the normals. If several faces of the cone contain r, to rounding, the one with the fewest
-// normals wins.
+// r lies in the cone of the normals. If several of its faces contain r, the one with the fewest normals wins.
 std::array<double, 3> normal_accelerations(const Vec3& a, std::span<const Vec3> normals) {
     normals = normals.first(std::min<std::size_t>(normals.size(), 3));
     const Vec3 r = project_off(a, normals) - a;

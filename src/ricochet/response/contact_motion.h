@@ -41,8 +41,7 @@ struct Motion {
 /// connection with random digits", 1951), because the last bit of a logarithm differs between systems.
 [[nodiscard]] Vec3 thermal_velocity(const Vec3& n, double thermal_speed, RandomSequence& random);
 
-/// Returns the vector closest to v that approaches none of the planes (w . n_i >= 0 for all i). At most three planes
-/// count.
+/// Returns the vector w closest to v that approaches none of the planes (w . n_i >= 0), of which at most three count.
 [[nodiscard]] Vec3 project_off(const Vec3& v, std::span<const Vec3> normals);
 
 /// Returns the reactions N_i >= 0, in m/s^2, of planes of the given unit normals (at most three) to a particle's

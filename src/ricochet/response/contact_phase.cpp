@@ -10,7 +10,6 @@
 #include "ricochet/core/bisection.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/along_surfaces.h"
-#include "ricochet/response/carried_particle.h"
 #include "ricochet/response/certified_motion.h"
 #include "ricochet/response/contact_motion.h"
 #include "ricochet/response/impact_problem.h"
@@ -23,8 +22,8 @@ namespace {
 
 bool is_kicked(const Flight& flight) { return flight.kick_duration > 0.0; }
 
-/// Returns the component of a velocity along a plane. Projects twice: a single projection leaves the rounding of the
-/// removed component. It can be faster than the remaining one, and would count as a departure from the plane.
+/// Returns the component of a velocity along a plane. Projects twice, because rounding of the removed component can
+/// exceed the remaining one and count as a departure.
 Vec3 along_plane(const Vec3& velocity, const Vec3& normal) {
     const Vec3 once = velocity - dot(velocity, normal) * normal;
     return once - dot(once, normal) * normal;
@@ -102,11 +101,9 @@ std::optional<Contact> ContactPhase::stay(const Contact& contact) {
     state().velocity = Vec3{};
     manifold_.replace(contact.all(), TouchRule::at(step_.geometry(), state().position));
     gather();
-    const ContactState contact_state = manifold_.contact_state();
     lift();
-    const std::span<const SurfaceId> supported_by = std::span(contact_state.surfaces).first(contact_state.count);
-    auto met = wait_in_place(step_, step_.remaining(), supported_by);
-    step_.log().note_stay(supported_by);
+    auto met = wait_in_place(step_, step_.remaining(), manifold_.surfaces());
+    step_.log().note_stay(manifold_.surfaces());
     return met;
 }
 
@@ -118,19 +115,16 @@ std::optional<ContactSurface> ContactPhase::find_support(const Flight& flight, c
     const double fastest = is_kicked(flight) ? std::numeric_limits<double>::infinity() : step_.resting_speed();
     const auto support = support_.after_rebounds(forces_now(flight), fastest);
     if (support || !is_kicked(flight)) return support;
-    // The kick has already applied its force. So a force that pulls the particle off does not act here, and a surface
-    // that bends towards its path holds it.
+    // The kick has already applied its force, so a surface that bends towards the path holds the particle.
     return support_.after_rebounds(Vec3{}, fastest);
 }
 
-/// Returns an impact on further surfaces that the particle touches and moves into, if there are some: it may have
-/// reached the edge of two walls on one of them first. Surfaces that begin to hold the particle take part. Their own
-/// rebounds end here, because a surface holds a particle only if the particle does not leave it.
+/// Returns an impact on further surfaces that the particle touches and moves into, for example at the edge of two
+/// walls. Surfaces that begin to hold the particle take part; their own rebounds end here.
 std::optional<Contact> ContactPhase::impact_beside(const ContactSurface& support) {
     const double rounding = kSlowSlip * length(state().velocity);
     const double slow = std::max(step_.resting_speed(), rounding);
-    // Impacts on the surfaces of a dynamic body are resolved one after another, which does not end in a narrow wedge.
-    // There, contact removes the approach.
+    // Impacts on a dynamic body are resolved one after another, which does not end in a narrow wedge.
     if (surfaces().is_dynamic(manifold_[0].surface)) return std::nullopt;
     std::array<double, kMostSupports> departures{};
     const auto is_hit_at = [&](const Vec3& velocity) {
@@ -170,9 +164,9 @@ void ContactPhase::land(const Motion& arriving) {
     manifold_.record_impulse(state().velocity - before, 1.0, ledger());
 }
 
-/// Moves the particle along a surface that bends towards it, although forces pull it off. With forward Euler, flights
-/// are straight until the forces act at their end, so a flight would lead back onto the surface at once. The forces act
-/// at the end of the motion along the surface instead.
+/// Moves the particle along a surface that bends towards it, although forces pull it off. With forward Euler, forces
+/// act at the end of straight flights, so a flight would lead back onto the surface at once. The forces act at the end
+/// of the motion along the surface instead.
 std::optional<Contact> ContactPhase::drift(const Flight& flight) {
     if (rules().settings.integrator.kind != IntegratorKind::forward_euler) return std::nullopt;
     const auto support = support_.after_rebounds(Vec3{}, step_.resting_speed());
@@ -204,11 +198,10 @@ ContactPhase::Stop ContactPhase::finish_cascade(const ContactSurface& support) {
         state().velocity =
             project_off(rebound > 0.0 ? along_plane(before, support.normal) : before, manifold_.normals());
     }
-    if (const auto still = rest_beside_rounding({state().velocity, particle().spin}, state().radius, forces,
-                                                manifold_.supports(surfaces()).all(),
-                                                manifold_.grip(1.0, step_.duration()), step_.duration())) {
-        state().velocity = still->velocity;
-        particle().spin = still->spin;
+    if (const auto still =
+            rest_beside_rounding(particle().motion(), state().radius, forces, manifold_.supports(surfaces()).all(),
+                                 manifold_.grip(1.0, step_.duration()), step_.duration())) {
+        particle().set_motion(*still);
     }
     ledger().record_impulse(support.surface, state().velocity - before, false);
     const bool rattles = manifold_.size() > 1 && rebound < kNegligibleRebound * step_.resting_speed();
@@ -269,7 +262,7 @@ std::optional<Contact> ContactPhase::follow_surface(bool kicked) {
 void ContactPhase::drop_rounding(double rounding) {
     const auto is_rounding = [&](const Vec3& normal) { return std::fabs(dot(state().velocity, normal)) <= rounding; };
     const std::span<const Vec3> normals = manifold_.normals();
-    if (std::all_of(normals.begin(), normals.end(), is_rounding)) {
+    if (std::ranges::all_of(normals, is_rounding)) {
         state().velocity = along_all(state().velocity, normals);
     }
     if (length(state().velocity) + state().radius * length(particle().spin) > rounding) return;
@@ -277,7 +270,6 @@ void ContactPhase::drop_rounding(double rounding) {
     particle().spin = {};
 }
 
-/// Adds all touched surfaces to the manifold.
 void ContactPhase::gather() {
     const TouchRule rule = TouchRule::at(step_.geometry(), state().position);
     visit_near(step_, [&](SurfaceId surface) { manifold_.touch(surface, rule); });
@@ -290,16 +282,14 @@ void ContactPhase::find_next_surfaces() {
     manifold_.drop_left(kTurningAway);
 }
 
-/// Returns true if the particle moves into one of the surfaces. That is an impact, for example of a particle spawned
-/// there.
+/// Returns true if the particle moves into one of the surfaces, which is an impact, for example after spawning there.
 bool ContactPhase::lands() const {
-    return std::any_of(manifold_.normals().begin(), manifold_.normals().end(), [&](const Vec3& normal) {
+    return std::ranges::any_of(manifold_.normals(), [&](const Vec3& normal) {
         return -dot(state().velocity, normal) > kSlowSlip * length(state().velocity);
     });
 }
 
-/// Lifts a particle at rest to the contact offset. The offset is the rounding of world coordinates, which may grow
-/// while a body carries the particle.
+/// Lifts a particle at rest to the contact offset, which may grow while a body carries the particle.
 void ContactPhase::lift() {
     ShortestShift shift;
     const double offset = step_.geometry().contact_offset(state().position);
@@ -313,8 +303,7 @@ void ContactPhase::lift() {
     if (is_low) state().position += shift.vector();
 }
 
-/// Returns how long, in s, the particle stays at rest, limited to the rest of the step. Forces in the frame of a moving
-/// body change with time.
+/// Returns how long, in s, the particle stays at rest in this step. Forces in the frame of a body change with time.
 double ContactPhase::time_at_rest() {
     // Local: samples and halvings of a search for a time, to its last bit.
     constexpr int kLooks = 8;
@@ -341,24 +330,21 @@ bool ContactPhase::rests_on(double time) {
     return support_.is_pressed(forces) && follower_.plan({forces}, step_.remaining()).at_rest;
 }
 
-/// Lets time pass at rest while the surfaces carry the weight. Returns a contact with a collider that moves to the
-/// particle.
+/// Lets time pass at rest on the surfaces. Returns a contact with a collider that moves to the particle.
 std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
     const Vec3 before = state().velocity;
-    const ContactState contact_state = manifold_.contact_state();
-    const std::span<const SurfaceId> supported_by = std::span(contact_state.surfaces).first(contact_state.count);
     state().velocity = Vec3{};
     if (!step_.is_near_bodies()) {
         manifold_.record_impulse(-before - duration * forces, duration, ledger());
         step_.log().note_impact();
         static_cast<void>(wait_in_place(step_, duration));
-        step_.log().note_stay(supported_by);  // forces do no work on a particle at rest
+        step_.log().note_stay(manifold_.surfaces());  // forces do no work on a particle at rest
         return std::nullopt;
     }
     step_.log().note_impact();
     const double left = step_.remaining();
     lift();
-    auto contact = wait_in_place(step_, duration, supported_by);
+    auto contact = wait_in_place(step_, duration, manifold_.surfaces());
     if (contact) follower_.join_impact(*contact);
     const double elapsed = left - step_.remaining();
     Vec3 mean = forces;
@@ -368,12 +354,11 @@ std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
         mean = rules().forces.acceleration(middle);
     }
     manifold_.record_impulse(-before - elapsed * mean, elapsed, ledger());
-    step_.log().note_stay(supported_by);
+    step_.log().note_stay(manifold_.surfaces());
     return contact;
 }
 
-/// Rests until the end of the step. held: the rest lasts until the forces change. Returns an earlier contact, if there
-/// is one.
+/// Rests until the end of the step or a contact, which is returned. held: the rest lasts until the forces change.
 std::optional<Contact> ContactPhase::rest(const Vec3& forces, bool held) {
     const Vec3& start = step_.chain().start();
     const bool is_back = length(state().position - start) <= kTouchingOffsets * step_.geometry().contact_offset(start);
@@ -393,7 +378,6 @@ Vec3 ContactPhase::forces_now(const Flight& flight) const {
     return is_kicked(flight) ? flight.acceleration : rules().forces.acceleration(state());
 }
 
-/// Returns the restitution of the bounces of a cascade.
 double ContactPhase::slow_restitution(SurfaceId surface) const {
     return surfaces().material_of(surface).restitution_at(step_.resting_speed());
 }

@@ -1,10 +1,9 @@
 /// \file
-/// Private to the exact response: a particle that slides, rolls or rests, or whose bounce cascade dies out.
+/// A particle that slides, rolls or rests, or whose bounce cascade dies out.
 #pragma once
 
 #include <optional>
 
-#include "ricochet/collision/contact_scratch.h"
 #include "ricochet/response/contact_follower.h"
 #include "ricochet/response/contact_manifold.h"
 #include "ricochet/response/contact_support.h"
@@ -13,9 +12,8 @@
 
 namespace ricochet {
 
-/// Lasting contact of one particle in one step. It consists of contact intervals with constant acceleration, and of
-/// curved-contact integration. It ends at the end of the step, at the end of the surface, at another contact, or when
-/// nothing presses the particle on.
+/// Lasting contact of one particle in one step. It ends at the end of the step or of the surface, at another contact,
+/// or when nothing presses the particle on.
 class ContactPhase {
 public:
     /// Construct it at the start of the step, which must outlive it.
@@ -23,9 +21,9 @@ public:
     ContactPhase(const ContactPhase&) = delete;
     ContactPhase& operator=(const ContactPhase&) = delete;
 
-    /// Continues contact that lasted until the end of the last step, without a new landing. Returns the next contact if
-    /// the particle slides into one. Otherwise the particle flies on if time is left.
-    /// rounding: rounding of the velocity, and of the speed of a sphere's surface, in a body's frame, in m/s.
+    /// Continues contact from the last step, without a new landing. Returns the next contact if the particle slides
+    /// into one. Otherwise the particle flies on if time is left. rounding: rounding of the velocity, and of the speed
+    /// of a sphere's surface, in a body's frame, in m/s.
     std::optional<Contact> resume(double rounding = 0.0);
     /// Call both at an impact, the first one before it is resolved. begin() begins contact if all rebounds are slow and
     /// something presses the particle on. arriving: the motion before the impact. Returns the same as resume().

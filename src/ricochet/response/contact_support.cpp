@@ -13,10 +13,9 @@ namespace ricochet {
 bool ContactSupport::rebounds_slowly(const Contact& contact, const Motion& arriving, const Vec3& forces,
                                      double kick_duration) const {
     const auto dies_out = [&] {
-        return std::any_of(contact.all().begin(), contact.all().end(),
-                           [&](const ContactSurface& surface) { return has_losses(surface); });
+        return std::ranges::any_of(contact.all(), [&](const ContactSurface& surface) { return has_losses(surface); });
     };
-    return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
+    return std::ranges::all_of(contact.all(), [&](const ContactSurface& surface) {
         const Material& material = surfaces().material_of(surface.surface);
         // The velocity from the step's own kick does not count as impact speed.
         const double kicked = std::max(0.0, -dot(forces, surface.normal)) * kick_duration;
@@ -34,9 +33,8 @@ bool ContactSupport::has_losses(const ContactSurface& surface) const {
 }
 
 /// Returns the speed of rebounds, in m/s, below which bounces on a surface count as contact. On a surface without
-/// losses, bounces die out only if another surface has losses (`dies_out`). Otherwise they never end, but count as
-/// contact if they rise no higher than the touching distance. kicked: true if the velocity contains a kick. Bounces on
-/// a surface without losses then never count as contact.
+/// losses, bounces die out only if another surface has losses (`dies_out`). Otherwise they count as contact if they
+/// rise no higher than the touching distance, but never if kicked: the velocity contains a kick.
 double ContactSupport::slow_rebound(const ContactSurface& surface, const Vec3& forces, bool kicked,
                                     bool dies_out) const {
     const double resting_speed = step_.resting_speed();
@@ -48,16 +46,22 @@ double ContactSupport::slow_rebound(const ContactSurface& surface, const Vec3& f
                     std::sqrt(2.0 * pressing * kTouchingOffsets * step_.geometry().contact_offset(state().position)));
 }
 
-std::optional<ContactSurface> ContactSupport::after_rebounds(const Vec3& forces, double fastest) const {
-    const PointAccelerations accelerations = combined_accelerations(forces, fastest);
+template <class PressingOf>
+std::optional<ContactSurface> ContactSupport::hardest(const PressingOf& pressing_of) const {
     std::optional<ContactSurface> support;
     double hardest = 0.0;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
-        if (!(length(accelerations[k]) > hardest)) continue;
-        hardest = length(accelerations[k]);
+        const double pressing = pressing_of(k);
+        if (!(pressing > hardest)) continue;
+        hardest = pressing;
         support = manifold_[k];
     }
     return support;
+}
+
+std::optional<ContactSurface> ContactSupport::after_rebounds(const Vec3& forces, double fastest) const {
+    const PointAccelerations accelerations = combined_accelerations(forces, fastest);
+    return hardest([&](std::size_t k) { return length(accelerations[k]); });
 }
 
 std::optional<Motion> ContactSupport::landing_on_all(const Vec3& forces) const {
@@ -70,7 +74,7 @@ std::optional<Motion> ContactSupport::landing_on_all(const Vec3& forces) const {
     }
     if (count < 2) return std::nullopt;
     const std::span<const SupportSurface> together(surfaces.data(), count);
-    return along_surfaces({state().velocity, particle().spin}, state().radius, together, sticking(together));
+    return along_surfaces(particle().motion(), state().radius, together, sticking(together));
 }
 
 Vec3 ContactSupport::velocity_after_rebounds(const Vec3& forces) const {
@@ -123,7 +127,7 @@ ContactSupport::PointAccelerations ContactSupport::combined_accelerations(const 
     }
     const std::span<const SupportSurface> together(surfaces.data(), count);
     const StuckSurfaces stuck = sticking(together);
-    const Motion motion = along_surfaces({state().velocity, particle().spin}, state().radius, together, stuck);
+    const Motion motion = along_surfaces(particle().motion(), state().radius, together, stuck);
     const FrictionLimits grip = manifold_.grip(1.0, step_.duration());
     const ContactInterval interval =
         plan_interval(motion, state().radius, forces, together, grip, step_.remaining(), stuck);
@@ -139,30 +143,15 @@ double ContactSupport::fastest_separation(const ContactSurface& surface, const V
     return slow > 0.0 ? slow : -std::numeric_limits<double>::infinity();
 }
 
-/// Returns the surfaces on which the particle does not slip. A slip caused by slow separation from another surface does
-/// not count.
+/// Returns the surfaces on which the particle does not slip, except by slow separation from another surface.
 StuckSurfaces ContactSupport::sticking(std::span<const SupportSurface> surfaces) const {
-    StuckSurfaces stuck{};
-    const Motion motion{state().velocity, particle().spin};
-    const double scale = speed_scale(motion, state().radius, surfaces);
-    for (std::size_t k = 0; k < surfaces.size(); ++k) {
-        const Vec3 slip = slip_on(surfaces[k], motion, state().radius);
-        stuck[k].to_slip = surfaces[k].friction > 0.0 && length(slip) <= kSlowSlip * scale;
-    }
-    return stuck;
+    const Motion motion = particle().motion();
+    const double slow = kSlowSlip * speed_scale(motion, state().radius, surfaces);
+    return sticking_surfaces(motion, state().radius, surfaces, slow);
 }
 
 std::optional<ContactSurface> ContactSupport::hardest_pressed(const Vec3& forces) const {
-    std::optional<ContactSurface> support;
-    double hardest = 0.0;
-    for (std::size_t k = 0; k < manifold_.size(); ++k) {
-        const ContactSurface surface = manifold_[k];
-        const double pressing = pressing_on(surface, forces);
-        if (!(pressing > hardest)) continue;
-        hardest = pressing;
-        support = surface;
-    }
-    return support;
+    return hardest([&](std::size_t k) { return pressing_on(manifold_[k], forces); });
 }
 
 bool ContactSupport::is_pressed(const Vec3& forces) const {

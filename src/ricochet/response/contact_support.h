@@ -1,13 +1,11 @@
 /// \file
-/// Private to the exact response: finds the surfaces that press on a particle, and the surfaces that support it after
-/// an impact.
+/// Finds the surfaces that press on a particle, and the surfaces that support it after an impact.
 #pragma once
 
 #include <array>
 #include <optional>
 #include <span>
 
-#include "ricochet/collision/contact_scratch.h"
 #include "ricochet/response/along_surfaces.h"
 #include "ricochet/response/contact_manifold.h"
 #include "ricochet/response/particle_step.h"
@@ -21,35 +19,35 @@ public:
     /// Both arguments must outlive the object.
     ContactSupport(const ParticleStep& step, const ContactManifold& manifold) : step_(step), manifold_(manifold) {}
 
-    /// Returns true if all rebounds of an impact are so slow that the bounce cascade becomes contact. This requires
-    /// that the particle is pressed onto a surface. arriving: the motion before the impact. It contains a kick by the
-    /// forces over `kick_duration`, in s.
+    /// Returns true if all rebounds of an impact are so slow that the bounce cascade becomes contact. The particle must
+    /// be pressed onto a surface. arriving: the motion before, with a kick over `kick_duration`, in s.
     [[nodiscard]] bool rebounds_slowly(const Contact& contact, const Motion& arriving, const Vec3& forces,
                                        double kick_duration) const;
     /// Returns the surface that presses hardest on the particle after the rebounds, or std::nullopt if no surface does.
     /// Only surfaces that the particle leaves more slowly than `fastest`, in m/s, can support it.
     [[nodiscard]] std::optional<ContactSurface> after_rebounds(const Vec3& forces, double fastest) const;
-    /// Returns the motion after a landing on all supporting surfaces, or std::nullopt if there are fewer than two. The
-    /// particle's motion must be that just after the impact. If a rebound were removed first, the particle would slip
-    /// in another direction, and other surfaces would support it.
+    /// Returns the motion after a landing on all supporting surfaces, or std::nullopt if there are fewer than two. Call
+    /// it just after the impact: without a rebound, the particle would slip in another direction.
     [[nodiscard]] std::optional<Motion> landing_on_all(const Vec3& forces) const;
 
-    /// Returns the velocity, in m/s, after the slow rebounds from all supporting surfaces have ended. An approach
-    /// velocity towards other surfaces is kept.
+    /// Returns the velocity, in m/s, without the slow rebounds from supporting surfaces. Other approach velocities
+    /// stay.
     [[nodiscard]] Vec3 velocity_after_rebounds(const Vec3& forces) const;
 
     /// Returns the surface onto which the particle is pressed hardest, if any.
     [[nodiscard]] std::optional<ContactSurface> hardest_pressed(const Vec3& forces) const;
     /// Returns true if the particle is pressed onto one of the surfaces, or at least not accelerated away from it.
     [[nodiscard]] bool is_pressed(const Vec3& forces) const;
-    /// Returns the acceleration, in m/s^2, that presses the particle onto a surface. It results from forces and, on a
-    /// curved surface, from the motion along it.
+    /// Returns the acceleration, in m/s^2, onto a surface, by forces and by motion along its curvature.
     [[nodiscard]] double pressing_on(const ContactSurface& surface, const Vec3& forces) const;
 
 private:
     /// Accelerations, in m/s^2, indexed by the number of the contact point.
     using PointAccelerations = std::array<Vec3, kMostSupports>;
 
+    /// Returns the contact point k with the largest pressing_of(k), if one is above 0.
+    template <class PressingOf>
+    [[nodiscard]] std::optional<ContactSurface> hardest(const PressingOf& pressing_of) const;
     [[nodiscard]] bool has_losses(const ContactSurface& surface) const;
     [[nodiscard]] double slow_rebound(const ContactSurface& surface, const Vec3& forces, bool kicked,
                                       bool dies_out) const;

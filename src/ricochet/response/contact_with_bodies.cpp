@@ -19,8 +19,7 @@ Vec3 normal_in_world(const ResponseRules& rules, const MovingParticle& particle,
 struct SeenFromBody {
     SeenFromBody(const ResponseRules& rules, const FrameRules& frame_rules, const MovingParticle& particle, BodyId body)
         : frame(rules.bodies, body), state(particle.state) {
-        const RecordedMotion motion =
-            frame.in_frame({state.position, state.velocity, particle.spin}, particle.state.time);
+        const RecordedMotion motion = frame.in_frame(particle.recorded_motion(), particle.state.time);
         state.position = motion.position;
         state.velocity = motion.velocity;
         pull = frame_rules.rules_of(body).forces.acceleration(state);
@@ -44,7 +43,7 @@ double slowest_rebound_from(const ResponseRules& rules, const FrameRules& frame_
 }  // namespace
 
 bool releases(const ResponseRules& rules, const FrameRules& frame_rules, const MovingParticle& particle, BodyId body) {
-    const RecordedMotion motion{particle.state.position, particle.state.velocity, particle.spin};
+    const RecordedMotion motion = particle.recorded_motion();
     const ReferenceFrame frame(rules.bodies, body);
     const double jump = length(frame.in_frame(motion, particle.state.time).velocity);
     if (!rules.bodies.is_dynamic(body)) return jump > rules.settings.resting_speed;
@@ -75,15 +74,6 @@ std::optional<double> release_speed_from(const ResponseRules& rules, const Frame
         rules.settings.time_step * (length(seen.pull) + length(rules.forces.acceleration(particle.state)));
     if (speed > std::max(rules.settings.resting_speed, of_step)) return std::nullopt;
     return speed;
-}
-
-Contact supporting_surfaces(const Contact& contact) {
-    Contact part = contact;
-    part.count = 0;
-    for (const ContactSurface& surface : contact.all()) {
-        if (surface.is_support) part.surfaces[static_cast<std::size_t>(part.count++)] = surface;
-    }
-    return part;
 }
 
 }  // namespace ricochet

@@ -11,11 +11,10 @@ namespace ricochet {
 namespace {
 
 /// Largest number of steps of Newton's method, and of halvings of one step. Four or five steps usually suffice. More
-/// steps do not help if the iteration cycles. Local, because the result of the search is checked.
+/// steps do not help if the iteration cycles. Local: the result is checked.
 constexpr int kNewtonSteps = 14;
 constexpr int kHalvings = 4;
-/// Number of sweeps before the first comparison of changes, see kSteadyChange. Local, because the result of the search
-/// is checked.
+/// Number of sweeps before the first comparison of changes, see kSteadyChange. Local: the result is checked.
 constexpr int kFirstComparison = 32;
 
 }  // namespace
@@ -48,11 +47,7 @@ std::array<double, 2> CoulombEquations::force_of(std::size_t resistance) const {
     return {force_[i], resistances_[resistance].size == 2 ? force_[i + 1] : 0.0};
 }
 
-double CoulombEquations::largest_force() const {
-    double largest = 0.0;
-    for (std::size_t i = 0; i < unknowns_; ++i) largest = std::max(largest, std::fabs(force_[i]));
-    return largest;
-}
+double CoulombEquations::largest_force() const { return largest_change_from({}); }
 
 double CoulombEquations::largest_change_from(const Unknowns& before) const {
     double largest = 0.0;
@@ -62,9 +57,7 @@ double CoulombEquations::largest_change_from(const Unknowns& before) const {
 
 MotionVector CoulombEquations::change() const {
     MotionVector sum{};
-    for (std::size_t i = 0; i < unknowns_; ++i) {
-        for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += force_[i] * direction_[i][c];
-    }
+    for (std::size_t i = 0; i < unknowns_; ++i) add_multiple(sum, force_[i], direction_[i]);
     return sum;
 }
 
@@ -94,7 +87,7 @@ double CoulombEquations::solve_independent() {
     (void)find_defects({});
     for (std::size_t k = 0; k < resistance_count_; ++k) {
         const Wish wish = wish_of(k, {});
-        const double part = wish.is_cut ? wish.most / wish.size : 1.0;
+        const double part = wish.part();
         for (std::size_t d = 0; d < resistances_[k].size; ++d) force_[first_[k] + d] = part * wish.force[d];
     }
     return find_defects({});
@@ -126,7 +119,7 @@ bool CoulombEquations::relax(const Compliance& compliance, int sweeps) {
         rate_[i] = free_rate_[i] + dot(direction_[i], all) + compliance.value * (force_[i] - compliance.anchor[i]);
     };
     const auto set = [&](std::size_t i, double value) {
-        for (std::size_t c = 0; c < all.size(); ++c) all[c] += (value - force_[i]) * direction_[i][c];
+        add_multiple(all, value - force_[i], direction_[i]);
         force_[i] = value;
     };
     int comparison = kFirstComparison;
@@ -144,7 +137,7 @@ bool CoulombEquations::relax(const Compliance& compliance, int sweeps) {
             const CoulombResistance& r = resistances_[k];
             for (std::size_t d = 0; d < r.size; ++d) find_rate(first_[k] + d);
             const Wish wish = wish_of(k, compliance);
-            const double part = wish.is_cut ? wish.most / wish.size : 1.0;
+            const double part = wish.part();
             for (std::size_t d = 0; d < r.size; ++d) set(first_[k] + d, part * wish.force[d]);
         }
         if (sweep != comparison) continue;
@@ -192,7 +185,7 @@ double CoulombEquations::find_defects(const Compliance& compliance) {
     }
     for (std::size_t k = 0; k < resistance_count_; ++k) {
         const Wish wish = wish_of(k, compliance);
-        const double part = wish.is_cut ? wish.most / wish.size : 1.0;
+        const double part = wish.part();
         for (std::size_t d = 0; d < resistances_[k].size; ++d) {
             defect_[first_[k] + d] = force_[first_[k] + d] - part * wish.force[d];
         }
@@ -218,7 +211,7 @@ void CoulombEquations::find_rows_of(std::size_t resistance, const Compliance& co
     const std::size_t i = first_[resistance];
     const Wish wish = wish_of(resistance, compliance);
     const bool cut = wish.is_cut;
-    const double part = cut ? wish.most / wish.size : 1.0;
+    const double part = wish.part();
     const std::array unit{cut ? wish.force[0] / wish.size : 0.0, cut ? wish.force[1] / wish.size : 0.0};
     for (std::size_t d = 0; d < r.size; ++d) {
         for (std::size_t j = 0; j < unknowns_; ++j) {

@@ -1,6 +1,6 @@
 /// \file
-/// Private to the responses: the equations of rigid contact with Coulomb friction for one sphere or point, and Newton's
-/// method and Gauss-Seidel sweeps on them.
+/// The equations of rigid contact with Coulomb friction for one sphere or point, and Newton's method and Gauss-Seidel
+/// sweeps on them.
 ///
 /// A motion has six coordinates: the velocity v and the turning sqrt(2/5) r omega of a solid sphere, so that all have
 /// the same inertia. A contact has a force N >= 0 along one direction of that space. Its resistances (to sliding,
@@ -27,6 +27,10 @@ using MotionVector = std::array<double, 6>;
     double sum = 0.0;
     for (std::size_t c = 0; c < a.size(); ++c) sum += a[c] * b[c];
     return sum;
+}
+
+inline void add_multiple(MotionVector& sum, double factor, const MotionVector& direction) {
+    for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += factor * direction[c];
 }
 
 /// One contact: 0 <= N, 0 <= rate, N rate = 0.
@@ -63,14 +67,16 @@ public:
 
     /// Removes all contacts and resistances.
     void clear() { contact_count_ = resistance_count_ = sweeps_ = 0; }
+    /// Adds a contact. There can be at most kMostContacts.
     void add(const CoulombContact& contact) { contacts_[contact_count_++] = contact; }
+    /// Adds a resistance of a contact that has been added. There can be at most kMostResistances.
     void add(const CoulombResistance& resistance) { resistances_[resistance_count_++] = resistance; }
     [[nodiscard]] std::size_t contacts() const { return contact_count_; }
-    /// Returns the number of Gauss-Seidel sweeps since clear().
+    /// Returns the number of Gauss-Seidel sweeps since clear(), a measure of the cost.
     [[nodiscard]] std::size_t sweeps() const { return sweeps_; }
 
-    /// Sets all forces to 0 and scales the rates. friction: factor on all bounds. Returns the scale, 0 if all rates are
-    /// 0.
+    /// Sets all forces to 0 and scales the rates. friction: factor on all bounds. Returns the scale, or 0 without
+    /// rates.
     [[nodiscard]] double set_up(double friction);
     [[nodiscard]] double friction() const { return friction_; }
     void set_friction(double factor) { friction_ = factor; }
@@ -87,19 +93,17 @@ public:
     /// Limits forces that exceed their bounds by rounding, and multiplies all forces by the scale.
     void cut_to_bounds(double scale);
 
-    /// Returns true if no force changes the rate of another force, for example on one surface without rolling
-    /// resistance.
+    /// Returns true if no force changes the rate of another one, as on one surface without rolling resistance.
     [[nodiscard]] bool are_independent() const;
     /// Solves independent equations. Returns the largest defect.
     [[nodiscard]] double solve_independent();
     /// Returns the largest defect of the equations.
     double find_defects(const Compliance& compliance);
-    /// Applies Newton's method. Halves a step while the largest defect does not decrease. Returns true if the final
-    /// largest defect is at most `enough`.
+    /// Applies Newton's method, with steps halved until they help. Returns true if the largest defect is at most
+    /// `enough`.
     [[nodiscard]] bool newton(const Compliance& compliance, double enough);
-    /// Makes Gauss-Seidel sweeps, which solve every contact and resistance in turn for the current forces of the
-    /// others. Returns true if forces diverge, as in a wedge that friction jams: late sweeps change them as much as
-    /// early sweeps.
+    /// Makes Gauss-Seidel sweeps. Returns true if forces diverge, as in a wedge that friction jams: late sweeps change
+    /// them as much as early sweeps.
     [[nodiscard]] bool relax(const Compliance& compliance, int sweeps);
 
 private:
@@ -110,6 +114,9 @@ private:
         double most = 0.0;
         double gain = 0.0;
         bool is_cut = false;  ///< true: the force exceeds `most` and is limited to it
+
+        /// Returns the factor on the force that limits it to `most`.
+        [[nodiscard]] double part() const { return is_cut ? most / size : 1.0; }
     };
 
     void find_matrix(const Compliance& compliance);

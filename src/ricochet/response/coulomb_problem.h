@@ -1,6 +1,6 @@
 /// \file
-/// Private to the responses: solves the problem of rigid contact with Coulomb friction for one sphere or point, to
-/// rounding. Any mix of surfaces may touch it at once. coulomb_equations.h defines the problem.
+/// Solves the problem of rigid contact with Coulomb friction for one sphere or point, to rounding. Any mix of surfaces
+/// may touch it at once. coulomb_equations.h defines the problem.
 ///
 /// The problem can have several solutions, because rigid contacts can share their load differently and friction can
 /// wedge a particle. The solver returns the limit of the solutions for compliant contacts as they become stiff. This
@@ -20,22 +20,19 @@
 namespace ricochet {
 
 /// The problem and its solution. Objects are large, so do not copy them.
-class CoulombProblem {
+class CoulombProblem : CoulombEquations {
 public:
-    static constexpr std::size_t kMostContacts = CoulombEquations::kMostContacts;
-    static constexpr std::size_t kMostResistances = CoulombEquations::kMostResistances;
+    using CoulombEquations::kMostContacts;
+    using CoulombEquations::kMostResistances;
 
-    /// Effort of the search. If a solution exists, `some` fails to find it in a few percent of all problems, and `most`
-    /// in one of a thousand.
+    /// Effort of the search. `some` misses a solution in a few percent of all problems, and `most` in one of a
+    /// thousand.
     enum class Effort { some, most, all };
 
-    /// Removes all contacts and resistances.
-    void clear() { equations_.clear(); }
-    /// Adds a contact. There can be at most kMostContacts.
-    void add(const CoulombContact& contact) { equations_.add(contact); }
-    /// Adds a resistance of a contact that has been added. There can be at most kMostResistances.
-    void add(const CoulombResistance& resistance) { equations_.add(resistance); }
-    [[nodiscard]] std::size_t contacts() const { return equations_.contacts(); }
+    using CoulombEquations::add;
+    using CoulombEquations::clear;
+    using CoulombEquations::contacts;
+    using CoulombEquations::sweeps;
 
     /// Solves the problem. Returns true if the conditions are met to kCoulombResidual times the largest rate. A
     /// solution always exists if no resistance is moving, all rates result from one motion, and some motion separates
@@ -43,30 +40,21 @@ public:
     bool solve(Effort effort, double friction = 1.0);
 
     /// Solves the problem with the largest part of the friction for which a solution is found, and returns this part. A
-    /// solution is accepted if its residual is at most kNearlySolved. Rounding can prevent a smaller residual if
-    /// surfaces press against each other. Parts below the full friction, down to zero, are tried with an effort of at
-    /// most `most`.
+    /// residual of kNearlySolved is accepted, because surfaces that press against each other cause rounding. Parts
+    /// below full friction are tried with an effort of at most `most`.
     double solve_with_most(Effort effort, double friction = 1.0);
 
     /// Returns false if the last solution meets the conditions only to kNearlySolved, or not at all.
     [[nodiscard]] bool is_solved() const { return residual_ <= kCoulombResidual; }
 
-    /// Returns the number of sweeps over the contacts since clear(), a measure of the cost of the search.
-    [[nodiscard]] std::size_t sweeps() const { return equations_.sweeps(); }
+    // The solution.
 
     /// Returns the force of a contact.
-    [[nodiscard]] double reaction(std::size_t contact) const { return equations_.forces()[contact]; }
-    /// Returns the forces of a resistance along its directions.
-    [[nodiscard]] std::array<double, 2> force_of(std::size_t resistance) const {
-        return equations_.force_of(resistance);
-    }
-    /// Returns the change of the motion by all forces together.
-    [[nodiscard]] MotionVector change() const { return equations_.change(); }
+    [[nodiscard]] double reaction(std::size_t contact) const { return forces()[contact]; }
+    using CoulombEquations::change;
+    using CoulombEquations::force_of;
 
 private:
-    using Unknowns = CoulombEquations::Unknowns;
-    using Compliance = CoulombEquations::Compliance;
-
     /// A solved stage of the continuation from soft to stiff contacts.
     struct Reached {
         double compliance = 1.0;
@@ -86,7 +74,6 @@ private:
     [[nodiscard]] bool find_other(const Compliance& compliance);
     [[nodiscard]] bool grow_friction(const Compliance& compliance);
 
-    CoulombEquations equations_;
     bool may_try_long_ = false;  // true: solve_at() may try the longer starts once
     bool runs_away_ = false;     // true if forces diverged in the last make_stiff()
     double residual_ = 0.0;      // of the last solution, relative to the largest rate

@@ -5,7 +5,6 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
-#include "ricochet/response/largest_curvature.h"
 #include "ricochet/response/normal_rate.h"
 
 namespace ricochet {
@@ -42,8 +41,8 @@ CurvedContact::CurvedContact(const SurfaceGeometry& geometry, const ForceField& 
     for (std::size_t k = 0; k < materials_.count; ++k) has_load_[k] = now.reaction[k] != Vec3{};
     const bool are_steady = !start.has_forces || forces.is_uniform_for(particle);
     has_potential_ = !are_steady && forces.is_conservative_for(particle);
-    is_driven_ = std::any_of(materials.surfaces.begin(), materials.surfaces.begin() + materials.count,
-                             [](const SupportSurface& surface) { return surface.motion != nullptr; });
+    is_driven_ =
+        std::ranges::any_of(materials.all(), [](const SupportSurface& surface) { return surface.motion != nullptr; });
     keeps_energy_ = (are_steady || has_potential_) && !is_driven_ && !dissipates();
     friction_turns_fast_ = plan_.is_stiff || ends_a_slip() || begins_to_slip(now) || may_jam();
 }
@@ -81,7 +80,7 @@ CurvedContact::State CurvedContact::by_midpoint_rule(double t) const {
         const Vec3 pull = forces(middle, elapsed + half);
         const ContactInterval plan =
             plan_interval_by_middle(state.motion, particle_.radius, pull, supports(state, elapsed).all(),
-                                    supports(middle, elapsed + half).all(), grip(), left);
+                                    supports(middle, elapsed + half).all(), start_.grip, left);
         const Vec3 spin_change = this->spin_change(middle, elapsed + half);
         const Vec3& v = state.motion.velocity;
         const double passed = plan.duration;
@@ -107,8 +106,7 @@ double CurvedContact::spin_power(const State& state, const Vec3& change) const {
     return 0.4 * particle_.radius * particle_.radius * dot(state.motion.spin, change);
 }
 
-/// Returns the surfaces in a state. Adds the effect of the frame's motion on slip and rotation to their curvature
-/// terms.
+/// Returns the surfaces in a state. Their curvature terms include the effect of the frame's motion.
 CurvedContact::SupportList CurvedContact::supports(const State& state, double t) const {
     SupportList result = supports(state);
     const Vec3 change = spin_change(state, t);
@@ -124,14 +122,16 @@ CurvedContact::SupportList CurvedContact::supports(const State& state, double t)
     return result;
 }
 
+/// Returns the state after t, in s, at constant rates from the start.
+CurvedContact::State CurvedContact::moved(const Rate& rate, double t) const {
+    const State begin = start();
+    return {begin.position + t * rate.velocity,
+            {begin.motion.velocity + t * rate.acceleration, begin.motion.spin + t * rate.spin_acceleration},
+            t * rate.power};
+}
+
 /// Integrates by the classical Runge-Kutta method.
 CurvedContact::State CurvedContact::by_stages(double t) const {
-    const State begin = start();
-    const auto moved = [&](const Rate& r, double s) {
-        return State{begin.position + s * r.velocity,
-                     {begin.motion.velocity + s * r.acceleration, begin.motion.spin + s * r.spin_acceleration},
-                     s * r.power};
-    };
     const Rate& first = rate_at_start();
     const Rate second = rate(moved(first, 0.5 * t), 0.5 * t);
     const Rate third = rate(moved(second, 0.5 * t), 0.5 * t);
@@ -150,26 +150,19 @@ CurvedContact::State CurvedContact::by_stages(double t) const {
 /// Returns the estimated error divided by the tolerance. The estimate is the difference between the Runge-Kutta method
 /// and the midpoint rule, which is of second order.
 double CurvedContact::error_of(double t) const {
-    const State begin = start();
     if (!(particle_.time + 0.5 * t > particle_.time)) return 0.0;
-    const Rate& first = rate_at_start();
-    const double half = 0.5 * t;
-    const State middle{
-        begin.position + half * first.velocity,
-        {begin.motion.velocity + half * first.acceleration, begin.motion.spin + half * first.spin_acceleration}};
-    const Rate second = rate(middle, half);
+    const State by_midpoint = moved(rate(moved(rate_at_start(), 0.5 * t), 0.5 * t), t);
     const State end = by_stages(t);
-    const double velocity = length(begin.motion.velocity + t * second.acceleration - end.motion.velocity);
-    const double turning = length(begin.motion.spin + t * second.spin_acceleration - end.motion.spin);
-    const double displacement = length(begin.position + t * second.velocity - end.position);
+    const double velocity = length(by_midpoint.motion.velocity - end.motion.velocity);
+    const double turning = length(by_midpoint.motion.spin - end.motion.spin);
+    const double displacement = length(by_midpoint.position - end.position);
     return std::max((velocity + particle_.radius * turning) / start_.tolerance->velocity,
                     displacement / start_.tolerance->position);
 }
 
 /// Returns a time, in s, of at most `duration`, in which the error is within the tolerance. The error is proportional
-/// to the cube of the time. The next trial is slightly shorter than the time that follows from this law, as usual in
-/// step control (E. Hairer, S. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., Springer 1993,
-/// section II.4).
+/// to the cube of the time. The next trial is slightly shorter than that law says (E. Hairer, S. Norsett, G. Wanner,
+/// "Solving Ordinary Differential Equations I", 2nd ed., Springer 1993, section II.4).
 double CurvedContact::longest_within_tolerance(double duration) const {
     // Local, because error_of() decides whether a time is accepted.
     constexpr double kSafety = 0.9;
@@ -185,8 +178,7 @@ double CurvedContact::longest_within_tolerance(double duration) const {
 CurvedContact::SupportChange CurvedContact::support_at(const State& state, double t) const {
     if (state.turned > kMostTurn) return SupportChange::turned;
     const ContactInterval plan = plan_at(state, t, 0.0);
-    if (std::all_of(plan.reaction.begin(), plan.reaction.end(),
-                    [](const Vec3& reaction) { return reaction == Vec3{}; })) {
+    if (std::ranges::all_of(plan.reaction, [](const Vec3& reaction) { return reaction == Vec3{}; })) {
         return SupportChange::none;
     }
     if (plan.jams && !jams_) return SupportChange::jammed;
@@ -205,16 +197,23 @@ bool CurvedContact::jumps(const State& before, const State& after) const {
            displacement > kJump * radius + kTouchingOffsets * geometry_.contact_offset(before.position);
 }
 
-/// Returns true if slip or rotation stops at the end of the arc. Friction has no direction there.
-bool CurvedContact::ends_a_slip() const {
+/// Returns true if is(k) is true for a surface k that carries load at the start.
+template <class Is>
+bool CurvedContact::is_any_loaded(const Is& is) const {
     for (std::size_t k = 0; k < materials_.count; ++k) {
-        const Stuck& before = stuck_[k];
-        const Stuck& after = plan_.stuck[k];
-        if (!has_load_[k]) continue;
-        if (after.to_slip && !before.to_slip) return true;
-        if ((after.to_turning && !before.to_turning) || (after.to_spinning && !before.to_spinning)) return true;
+        if (has_load_[k] && is(k)) return true;
     }
     return false;
+}
+
+/// Returns true if slip or rotation stops at the end of the arc. Friction has no direction there.
+bool CurvedContact::ends_a_slip() const {
+    return is_any_loaded([&](std::size_t k) {
+        const Stuck& before = stuck_[k];
+        const Stuck& after = plan_.stuck[k];
+        return (after.to_slip && !before.to_slip) || (after.to_turning && !before.to_turning) ||
+               (after.to_spinning && !before.to_spinning);
+    });
 }
 
 double CurvedContact::longest() const {
@@ -235,12 +234,12 @@ double CurvedContact::longest() const {
             if (rate > 0.0) duration = std::min(duration, kMaxArcAngle / rate);
         }
         const CollisionWorld::Nearest touched = surfaces_.nearest(k, begin.position);
-        const auto turning_along = [&](const Vec3& direction) {
-            return normal_rate(geometry_, particle_.radius, surfaces_.id(k), touched, begin.position, direction);
-        };
-        turning = std::max(turning, length(turning_along(heading)));
-        curvature =
-            std::max({curvature, turning, largest_curvature(std::span(normals).first(supports), turning_along)});
+        const double radius = particle_.radius;
+        const Vec3 turn = normal_rate(geometry_, radius, surfaces_.id(k), touched, begin.position, heading);
+        turning = std::max(turning, length(turn));
+        curvature = std::max({curvature, turning,
+                              largest_curvature(geometry_, radius, surfaces_.id(k), touched, begin.position,
+                                                std::span(normals).first(supports))});
     }
     if (turning > 0.0 && speed > 0.0) duration = std::min(duration, kMaxArcAngle / (turning * speed));
     if (curvature > 0.0) duration = std::min(duration, longest_swing(curvature));
@@ -248,12 +247,10 @@ double CurvedContact::longest() const {
     return varies ? longest_within_tolerance(duration) : duration;
 }
 
-/// Returns a time, in s, in which the motion under the forces turns only a little, on surfaces of the given curvature,
-/// in 1/m.
+/// Returns a time, in s, in which motion under the forces turns a little, on surfaces of a curvature, in 1/m.
 double CurvedContact::longest_swing(double curvature) const {
     const double acceleration = length(rate_at_start().acceleration);
-    // A force that presses on the surface here acts along the surface after a quarter turn. The particle therefore
-    // swings like a pendulum with this frequency.
+    // A force that presses on the surface acts along it after a quarter turn, so the particle swings like a pendulum.
     const double frequency = std::sqrt(curvature * length(forces_at_start_));
     return std::min(std::sqrt(2.0 * kMaxArcAngle / (curvature * acceleration)), kMaxArcPhase / frequency);
 }
@@ -291,19 +288,16 @@ Vec3 CurvedContact::forces(const State& state, double t) const {
     return forces_.acceleration(input);
 }
 
-FrictionLimits CurvedContact::grip() const { return {start_.pressure, start_.shortest, start_.negligible_path}; }
-
-ContactInterval CurvedContact::plan_at(const State& state, double t, double duration,
-                                       const StuckSurfaces& stuck) const {
-    return plan_interval(state.motion, particle_.radius, forces(state, t), supports(state, t).all(), grip(), duration,
-                         stuck);
+ContactInterval CurvedContact::plan_at(const State& state, double t, double duration) const {
+    return plan_interval(state.motion, particle_.radius, forces(state, t), supports(state, t).all(), start_.grip,
+                         duration);
 }
 
 CurvedContact::Rate CurvedContact::rate(const State& state, double t) const {
     const Vec3 pull = forces(state, t);
     const Vec3& v = state.motion.velocity;
     const ContactInterval plan =
-        plan_interval(state.motion, particle_.radius, pull, supports(state, t).all(), grip(), 0.0, stuck_);
+        plan_interval(state.motion, particle_.radius, pull, supports(state, t).all(), start_.grip, 0.0, stuck_);
     const Vec3 change = spin_change(state, t);
     return {v, plan.acceleration, plan.spin_acceleration + change,
             dot(pull - forces_at_start_, v) + spin_power(state, change)};
@@ -339,30 +333,26 @@ void CurvedContact::put_on_surfaces(State& state) const {
     state.position = flush_tiny(state.position);
 }
 
-/// Returns true if the particle slips against friction, or rolls or spins against resistance.
-bool CurvedContact::dissipates() const {
-    for (std::size_t k = 0; k < materials_.count; ++k) {
-        const SupportSurface& surface = materials_.surfaces[k];
-        if (!has_load_[k]) continue;
-        if (surface.friction > 0.0 && !stuck_[k].to_slip) return true;
-        if (surface.rolling_friction > 0.0 && particle_.radius > 0.0 && !stuck_[k].to_turning) return true;
-        if (surface.spinning_friction > 0.0 && particle_.radius > 0.0 && !stuck_[k].to_spinning) return true;
-    }
-    return false;
+/// Returns true if a sphere may roll or spin against the resistance of surface k.
+bool CurvedContact::has_resisted_turning(std::size_t k) const {
+    const SupportSurface& surface = materials_.surfaces[k];
+    return particle_.radius > 0.0 && ((surface.rolling_friction > 0.0 && !stuck_[k].to_turning) ||
+                                      (surface.spinning_friction > 0.0 && !stuck_[k].to_spinning));
 }
 
-/// Returns true if the particle rolls or spins against resistance between several surfaces. The resistance can then be
-/// arbitrarily large, because the surfaces can press against each other. Some stages of a Runge-Kutta step would see a
-/// braked particle, and others a free one.
+/// Returns true if the particle slips against friction, or rolls or spins against resistance.
+bool CurvedContact::dissipates() const {
+    return is_any_loaded([&](std::size_t k) {
+        return (materials_.surfaces[k].friction > 0.0 && !stuck_[k].to_slip) || has_resisted_turning(k);
+    });
+}
+
+/// Returns true if the particle rolls or spins against resistance between several surfaces. Surfaces that press against
+/// each other can resist without limit. Some stages of a Runge-Kutta step would then see a braked particle, and others
+/// a free one.
 bool CurvedContact::may_jam() const {
-    if (particle_.radius == 0.0 || std::count(has_load_.begin(), has_load_.end(), true) < 2) return false;
-    for (std::size_t k = 0; k < materials_.count; ++k) {
-        const SupportSurface& surface = materials_.surfaces[k];
-        if (!has_load_[k]) continue;
-        if (surface.rolling_friction > 0.0 && !stuck_[k].to_turning) return true;
-        if (surface.spinning_friction > 0.0 && !stuck_[k].to_spinning) return true;
-    }
-    return false;
+    return std::ranges::count(has_load_, true) > 1 &&
+           is_any_loaded([&](std::size_t k) { return has_resisted_turning(k); });
 }
 
 /// Returns true if slip, rolling or spinning is about to begin against a resistance.
@@ -372,17 +362,15 @@ bool CurvedContact::begins_to_slip(const ContactInterval& now) const {
     const auto begins = [&](double resistance, bool is_stuck, const Vec3& rate) {
         return resistance > 0.0 && !is_stuck && length(rate) <= slow;
     };
-    for (std::size_t k = 0; k < materials_.count; ++k) {
+    return is_any_loaded([&](std::size_t k) {
         const SupportSurface& surface = materials_.surfaces[k];
-        if (!has_load_[k]) continue;
         if (begins(surface.friction, stuck_[k].to_slip, slip_on(surface, now.motion, radius))) return true;
-        if (radius == 0.0) continue;
+        if (radius == 0.0) return false;
         const Vec3 spin = now.motion.spin - surface.angular_velocity;
         const Vec3 spinning = dot(spin, surface.normal) * surface.normal;
-        if (begins(surface.rolling_friction, stuck_[k].to_turning, radius * (spin - spinning))) return true;
-        if (begins(surface.spinning_friction, stuck_[k].to_spinning, radius * spinning)) return true;
-    }
-    return false;
+        return begins(surface.rolling_friction, stuck_[k].to_turning, radius * (spin - spinning)) ||
+               begins(surface.spinning_friction, stuck_[k].to_spinning, radius * spinning);
+    });
 }
 
 /// Returns the work of the forces per unit mass since the start, in m^2/s^2.
@@ -396,8 +384,7 @@ double CurvedContact::work_until(const State& state) const {
     return (before - forces_.potential_energy(there).value_or(0.0)) / particle_.mass;
 }
 
-/// Corrects a state so that the energy equals the energy at the start. For a slow particle the correction mainly
-/// changes the position, otherwise the speed.
+/// Corrects a state to the energy at the start: mainly the position of a slow particle, otherwise the speed.
 void CurvedContact::restore_energy(State& state, double t) const {
     const Vec3 a = forces(state, 0.0);
     for (int k = 0; k < kCorrections; ++k) {

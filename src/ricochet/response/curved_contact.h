@@ -1,15 +1,12 @@
 /// \file
-/// Private to the exact response: motion of a particle along curved surfaces that hold it, as an ordinary differential
-/// equation. It covers edges and vertices, the inside and outside of balls and cylinders, and any mix with flat
-/// surfaces. Source: integration with projection onto the invariants, E. Hairer, C. Lubich, G. Wanner, "Geometric
-/// Numerical Integration", 2nd ed., Springer 2006, section IV.4.
+/// Motion of a particle along curved surfaces that hold it, as an ordinary differential equation. It covers edges,
+/// vertices, both sides of balls and cylinders, and any mix with flat surfaces. Source: E. Hairer, C. Lubich, G.
+/// Wanner, "Geometric Numerical Integration", 2nd ed., Springer 2006, section IV.4.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <span>
-#include <vector>
 
 #include "ricochet/collision/contact_scratch.h"
 #include "ricochet/response/along_surfaces.h"
@@ -23,11 +20,9 @@ namespace ricochet {
 
 /// Inputs of an arc besides the particle's state.
 struct CurvedStart {
-    Vec3 spin;                                  ///< rad/s
-    double pressure = 1.0;                      ///< as FrictionLimits::pressure
+    Vec3 spin;  ///< rad/s
+    FrictionLimits grip;
     bool has_forces = true;                     ///< false: the velocity contains the forces since the start of the step
-    double shortest = 0.0;                      ///< s, as FrictionLimits::shortest
-    double negligible_path = 0;                 ///< m, as FrictionLimits::negligible_path
     double duration = 0.0;                      ///< s, largest duration of the arc
     std::optional<ErrorTolerance> tolerance{};  ///< for a method that chooses its own steps
     const FrameForces* frame = nullptr;         ///< reference frame; null in the world
@@ -39,9 +34,8 @@ public:
     struct State {
         Vec3 position;
         Motion motion;
-        double work = 0.0;  ///< m^2/s^2, work per unit mass of the forces minus that of the forces at the start
-        double turned =
-            0.0;  ///< largest change of a touched shape's unit normal since the start: length of the vector, 0 to 2
+        double work = 0.0;    ///< m^2/s^2, work per unit mass of the forces minus that of the forces at the start
+        double turned = 0.0;  ///< largest change of a touched shape's unit normal since the start: a length, 0 to 2
     };
 
     CurvedContact(const SurfaceGeometry& geometry, const ForceField& forces, const ForceInput& particle,
@@ -63,20 +57,16 @@ public:
     /// Returns the state at the start, with the motion along the surfaces.
     [[nodiscard]] State start() const { return {particle_.position, plan_.motion}; }
     /// Returns true if a surface carries load at the start.
-    [[nodiscard]] bool is_supported() const {
-        return std::any_of(has_load_.begin(), has_load_.end(), [](bool has_load) { return has_load; });
-    }
+    [[nodiscard]] bool is_supported() const { return std::ranges::find(has_load_, true) != has_load_.end(); }
     /// Returns the time, in s, until the particle has turned by kMaxArcAngle, or a motion is about to stick.
     [[nodiscard]] double longest() const;
 
-    /// Returns the contribution, in m/s^2, of a surface's curvature to the second derivative of the distance from it,
-    /// at this velocity.
+    /// Returns the second derivative of the distance from a surface by its curvature at this velocity, in m/s^2.
     [[nodiscard]] static double curvature_of(const SurfaceGeometry& geometry, const ForceInput& particle,
                                              const ContactSurface& surface, const Vec3& velocity);
 
 private:
     using SupportList = ContactManifold::SupportList;
-    /// Derivatives of the state.
     struct Rate {
         Vec3 velocity;
         Vec3 acceleration;
@@ -89,17 +79,19 @@ private:
     [[nodiscard]] Vec3 spin_change(const State& state, double t) const;
     [[nodiscard]] double spin_power(const State& state, const Vec3& change) const;
     [[nodiscard]] Vec3 forces(const State& state, double t) const;
-    [[nodiscard]] FrictionLimits grip() const;
-    [[nodiscard]] ContactInterval plan_at(const State& state, double t, double duration,
-                                          const StuckSurfaces& stuck = {}) const;
+    [[nodiscard]] ContactInterval plan_at(const State& state, double t, double duration) const;
     [[nodiscard]] Rate rate(const State& state, double t) const;
     [[nodiscard]] const Rate& rate_at_start() const;
+    [[nodiscard]] State moved(const Rate& rate, double t) const;
     void put_on_surfaces(State& state) const;
     [[nodiscard]] State by_stages(double t) const;
     [[nodiscard]] double error_of(double t) const;
     [[nodiscard]] double longest_within_tolerance(double duration) const;
     [[nodiscard]] double longest_swing(double curvature) const;
     [[nodiscard]] State by_midpoint_rule(double t) const;
+    template <class Is>
+    [[nodiscard]] bool is_any_loaded(const Is& is) const;
+    [[nodiscard]] bool has_resisted_turning(std::size_t k) const;
     [[nodiscard]] bool may_jam() const;
     [[nodiscard]] bool ends_a_slip() const;
     [[nodiscard]] bool begins_to_slip(const ContactInterval& now) const;

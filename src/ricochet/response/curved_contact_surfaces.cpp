@@ -16,8 +16,7 @@ CurvedContactSurfaces::CurvedContactSurfaces(const SurfaceGeometry& geometry, co
         surface.is_on_rim = !manifold[k].flat && geometry.nearest(surface.surface, particle.position).rim;
         surface.normal_at_start = outward_normal(surface, particle.position);
         surface.side = side_of(surface, manifold[k].normal, particle.position);
-        // In a shape as narrow as the sphere, the sphere touches both walls. The nearest wall is then the one opposite
-        // to the contact.
+        // A sphere in an equally narrow shape touches both walls. The nearest is then opposite to the contact.
         surface.is_narrow = radius_ > 0.0 && dot(surface.side * surface.normal_at_start, manifold[k].normal) < 0.0;
         if (radius_ == 0.0 || surface.is_flat) continue;
         const double overlap = radius_ - nearest(k, particle.position).distance;

@@ -20,13 +20,12 @@ public:
     /// Returns the nearest point of surface k. Its normal points to the particle's side at the start, because
     /// integration errors can put a position on the arc behind the surface. A face or side is extended beyond its rim.
     [[nodiscard]] CollisionWorld::Nearest nearest(std::size_t k, const Vec3& position) const;
-    /// Returns the largest change of the normal of a touched shape between the start and a position; 0 for a point. The
-    /// function uses outward normals, because a position straight ahead may lie behind the surface of a large shape.
-    /// There the direction from the surface to the position is reversed.
+    /// Returns the largest change of the normal of a touched shape between the start and a position; 0 for a point.
+    /// Uses outward normals, because a position straight ahead may lie behind the surface of a large shape.
     [[nodiscard]] double turned_at(const Vec3& position) const;
     /// Returns the overlap, in m, that a sphere keeps with curved surface k. A sphere that was spawned deep in the
-    /// surface keeps its overlap at the start, because moving it onto the surface would be a jump. Smaller overlaps are
-    /// removed; the result is then 0.
+    /// surface keeps its overlap, because moving it out would be a jump. Smaller overlaps are removed, so that the
+    /// result is 0.
     [[nodiscard]] double overlap(std::size_t k) const { return of_[k].overlap; }
 
 private:

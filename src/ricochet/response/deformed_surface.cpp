@@ -10,12 +10,12 @@
 #include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/sweep/closest_point.h"
+#include "ricochet/response/contact_manifold.h"
 
 namespace ricochet {
 namespace {
 
-/// Number of halvings in the bisection for the time at the rim. Local, because the bisection ends below the rounding of
-/// its result.
+/// Number of halvings in the bisection for the time at the rim. Local: it ends below rounding.
 constexpr int kRimHalvings = 48;
 
 /// A triangle within touching distance.
@@ -25,9 +25,8 @@ struct Candidate {
     bool is_left = false;
 };
 
-/// Returns the distance, in m, of a triangle from the projection of a position onto the triangle's plane. It is
-/// computed in this plane. The difference of the distances to rim and plane would have rounding errors of a few contact
-/// offsets.
+/// Returns the distance, in m, of a triangle from the projection of a position onto the triangle's plane. The
+/// difference of the distances to rim and plane would have rounding errors of a few contact offsets.
 double beyond_rim(const DeformedTriangle& triangle, const Vec3& p) {
     if (!triangle.nearest(p).rim) return 0.0;
     const Vec3 offset = closest_point_on_triangle(p, triangle.a, triangle.b, triangle.c).offset;
@@ -71,8 +70,7 @@ std::optional<Candidate> touched(const DeformingColliders& deforming, const Forc
     return found;
 }
 
-/// Returns true if a triangle lies behind the plane of another triangle, `over`, below the particle. The particle would
-/// reach `over` first.
+/// Returns true if a triangle lies behind the plane of another triangle, `over`, which the particle reaches first.
 bool is_behind(const DeformingColliders& deforming, double time, SurfaceId surface, const ContactSurface& over) {
     const auto [a, b, c] = deforming.triangle_at(surface, time);
     const double tolerance = 2.0 * deforming.mesh_with(surface).offset();
@@ -88,8 +86,8 @@ bool are_coplanar(const Candidate& one, const Candidate& other) {
 }
 
 /// Removes triangles beyond convex edges from the contacts of a point. A triangle beside the point is kept if it is in
-/// front of all triangles below the point. The other side of a wide valley is an example. A triangle coplanar with them
-/// is also kept, because rounding decides on which side of the common edge the point is.
+/// front of all triangles below the point, as in a wide valley, or coplanar with them: rounding decides on which side
+/// of the common edge the point is.
 void drop_beyond_convex_edges(const DeformingColliders& deforming, const ForceInput& particle,
                               std::vector<Candidate>& found) {
     const auto is_inside = [&](const Candidate& one) {
@@ -104,21 +102,13 @@ void drop_beyond_convex_edges(const DeformingColliders& deforming, const ForceIn
             return over.is_over && !are_coplanar(over, one) &&
                    is_behind(deforming, particle.time, one.contact.surface.surface, over.contact.surface);
         };
-        const bool is_seen = (one.is_over || !kept.empty()) && std::none_of(kept.begin(), kept.end(), hides);
+        const bool is_seen = (one.is_over || !kept.empty()) && std::ranges::none_of(kept, hides);
         if (is_inside(one) || is_seen) kept.push_back(std::move(one));
     }
     found = std::move(kept);
 }
 
-/// Returns one minus the cosine of the largest angle between the normals of an edge and of a face that a particle
-/// touches at once.
-double seam_turn(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface) {
-    if (particle.radius == 0.0) return kSameNormal;
-    return kSeamTurn + 2.0 * kTouchingOffsets * deforming.mesh_with(surface).offset() / particle.radius;
-}
-
-/// Returns true if a triangle beside a sphere lies in the plane of a supporting face, and stays in this plane until the
-/// next key time.
+/// Returns true if a triangle beside a sphere stays in the plane of a supporting face until the next key time.
 bool goes_on_as_one_plane(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface,
                           const ContactSurface& face) {
     const Vec3& p = particle.position;
@@ -138,14 +128,13 @@ bool goes_on_as_one_plane(const DeformingColliders& deforming, const ForceInput&
     return length(turn_there - turn_here) <= kSameVelocity * scale;
 }
 
-/// Adds triangles that continue the plane of a contact. A sphere that rolls over the edge of the face reaches these
-/// triangles, and they must not be obstacles.
+/// Adds triangles that continue the plane of a contact, because a sphere that rolls over the edge reaches them.
 void add_rest_of_planes(const DeformingColliders& deforming, const ForceInput& particle,
                         const std::vector<SurfaceId>& near, std::vector<DeformedContact>& all) {
     for (DeformedContact& contact : all) {
         if (!contact.surface.flat) continue;
         for (const SurfaceId surface : near) {
-            if (std::find(contact.all.begin(), contact.all.end(), surface) != contact.all.end()) continue;
+            if (std::ranges::find(contact.all, surface) != contact.all.end()) continue;
             if (goes_on_as_one_plane(deforming, particle, surface, contact.surface)) contact.all.push_back(surface);
         }
     }
@@ -170,8 +159,8 @@ std::vector<DeformedContact> touched_surfaces(const DeformingColliders& deformin
     std::stable_partition(found.begin(), found.end(), [](const Candidate& one) { return one.contact.surface.flat; });
     for (const Candidate& candidate : found) {
         const ContactSurface& one = candidate.contact.surface;
-        const double turn = seam_turn(deforming, particle, one.surface);
-        const auto known = std::find_if(all.begin(), all.end(), [&](const DeformedContact& other) {
+        const double turn = seam_turn(particle.radius, deforming.mesh_with(one.surface).offset());
+        const auto known = std::ranges::find_if(all, [&](const DeformedContact& other) {
             return 1.0 - dot(other.surface.normal, one.normal) <= (other.surface.flat != one.flat ? turn : kSameNormal);
         });
         if (known == all.end()) {

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the exact response: deforming meshes in lasting contact.
+/// Deforming meshes in lasting contact.
 #pragma once
 
 #include <functional>
@@ -8,15 +8,13 @@
 #include "ricochet/collision/contact.h"
 #include "ricochet/collision/deforming_colliders.h"
 #include "ricochet/dynamics/forces.h"
-#include "ricochet/geometry/sweep/path.h"
 
 namespace ricochet {
 
 /// One contact of a particle with a deforming mesh.
 struct DeformedContact {
     ContactSurface surface;
-    /// All triangles that the particle touches with this normal, including `surface`. Edges between them have no
-    /// effect.
+    /// All triangles with this normal, including `surface`. Edges between them have no effect.
     std::vector<SurfaceId> all;
 };
 
@@ -42,9 +40,9 @@ struct CurvatureTerms {
                                           const ContactSurface& surface);
 
 /// Returns the time, in s since the start of a trajectory, at which the trajectory leaves all triangles of a contact
-/// with a face. The trajectory has left them when its distance from the nearest triangle, along the triangle's plane,
-/// is larger than at the start. Returns `duration` if it does not leave them. The result is slightly later than the
-/// exact time. begin: time at the start, in s. position_at: position, in m, at a time since the start, in s.
+/// with a face. It has left them when its distance from the nearest one, along the triangle's plane, is larger than at
+/// the start. The result is slightly late, and at most `duration`. begin: time at the start, in s. position_at:
+/// position, in m, at a time since the start, in s.
 [[nodiscard]] double time_over(const DeformingColliders& deforming, const DeformedContact& contact,
                                const std::function<Vec3(double)>& position_at, double duration, double begin);
 

@@ -64,8 +64,7 @@ bool EventIsland::exceeds(const ImpactLimit& limit) const {
     return impacts_.size() > limit.in_all || most_of_one_ > limit.of_each;
 }
 
-/// Returns true if two members that exist for the whole step press on each other, see has_sunk(). is: a further
-/// condition on the pair.
+/// Returns true if two members press on each other for the whole step, see has_sunk(). is: further condition.
 template <class Is>
 bool EventIsland::any_sinks(const Is& is) const {
     const auto is_there = [](const IslandMember& member) { return !member.is_gone() && !member.is_cut_off; };
@@ -139,8 +138,7 @@ void EventIsland::predict(std::size_t m) {
         stay(m);
         return;
     }
-    // A member that has exhausted its bounce budget waits at the last wall, where other members may reach it. Moving
-    // walls carry it along.
+    // A member without bounce budget waits at the last wall, which may carry it, and other members may reach it.
     if (const double left = prediction.outcome.unsimulated_time; left > 0.0 && !prediction.outcome.is_absorbed()) {
         const FlownPiece& last = prediction.flown.back();
         const double begin = last.begin + last.duration;
@@ -165,9 +163,8 @@ void EventIsland::stay(std::size_t m) {
     boxes_[m] = grown({state.position, state.position}, member.radius());
 }
 
-/// Moves a member to a time along its predicted path. If the member bounces off a wall at the same time, the bounce
-/// comes first, because the other member meets it after the bounce. An example is a member on a floor that another one
-/// hits.
+/// Moves a member to a time along its predicted path. A bounce off a wall at the same time comes first, as for a member
+/// on a floor that another one hits.
 void EventIsland::bring(std::size_t m, double time) {
     const IslandMember& member = (*members_)[m];
     if (is_still(m)) return;
@@ -176,9 +173,8 @@ void EventIsland::bring(std::size_t m, double time) {
     if (!member.is_gone() && just_after < member.end && bounces_at(m, time)) go_to(m, just_after);
 }
 
-/// Returns true if a predicted contact of two members does not occur. One of them may be gone or may have lost time on
-/// its path. Its path along a wall may also differ from the prediction, because arcs are planned again up to the time
-/// of impact.
+/// Returns true if a predicted contact of two members does not occur. One may be gone or late, or differ from its
+/// prediction, because arcs are planned again up to the time of impact.
 bool EventIsland::is_missed(const PairContact& contact, double time) const {
     const IslandMember& a = (*members_)[contact.first];
     const IslandMember& b = (*members_)[contact.second];
@@ -201,7 +197,7 @@ bool EventIsland::bounces_at(std::size_t m, double time) const {
                length(piece.start_velocity - now) > most;
     };
     const std::vector<FlownPiece>& flown = predictions_[m].flown;
-    return !kicks_first(response_.rules().settings.integrator.kind) && std::any_of(flown.begin(), flown.end(), is_it);
+    return !kicks_first(response_.rules().settings.integrator.kind) && std::ranges::any_of(flown, is_it);
 }
 
 void EventIsland::go_to(std::size_t m, double time) {
@@ -215,15 +211,14 @@ void EventIsland::go_to(std::size_t m, double time) {
     } else {
         moving.beyond = member.end - time;
         moving.step_end = time;
-        add(member.outcome, response_.move(moving, duration, *scratch_));
+        member.outcome.add(response_.move(moving, duration, *scratch_));
         moving.beyond = 0.0;
     }
     moving.planned = nullptr;
     member.is_free = false;
     if (!member.is_gone()) moving.state.time = time;
-    MoveLists lists;
-    lists.take(*scratch_);
-    member.lists.append(lists);
+    member.lists.append(*scratch_);
+    scratch_->MoveLists::clear();
     member.append_off_bounds(scratch_->flown);
     Box3 box;
     for (const FlownPiece& piece : scratch_->flown) {
@@ -254,11 +249,11 @@ void EventIsland::commit(std::size_t m) {
     const bool has_left_bounds = member.impacts > 0;
     if (has_left_bounds) member.moving.planned = nullptr;
     if (has_left_bounds || member.moving.state.coupling != nullptr) member.append_off_bounds(prediction.flown);
-    if (member.is_fixed || member.is_cut_off || member.is_gone() || member.is_free) return;
+    if (is_still(m) || member.is_free) return;
     if (member.keeps_path && !member.has_left_bounds) member.trajectory = prediction.flown;
     member.moving = prediction.moved;
     if (has_left_bounds) member.moving.planned = nullptr;
-    add(member.outcome, prediction.outcome);
+    member.outcome.add(prediction.outcome);
     member.lists.append(prediction.lists);
 }
 
@@ -281,15 +276,19 @@ void EventIsland::note(std::size_t m, double time, std::size_t partner) {
     partners_[m] = partner;
 }
 
-/// Finds the next contact of every member.
+/// Records the next contact of two members for both.
+void EventIsland::note_meeting(std::size_t m, std::size_t other) {
+    const auto time = meeting_of(m, other);
+    if (!time) return;
+    note(m, *time, other);
+    note(other, *time, m);
+}
+
 void EventIsland::find_all() {
     for (std::size_t m = 0; m < members_->size(); ++m) {
         const std::vector<std::uint32_t>& near = neighbours_.of(m);
         for (auto other = std::upper_bound(near.begin(), near.end(), m); other != near.end(); ++other) {
-            const auto time = meeting_of(m, *other);
-            if (!time) continue;
-            note(m, *time, *other);
-            note(*other, *time, m);
+            note_meeting(m, *other);
         }
     }
 }
@@ -317,10 +316,7 @@ void EventIsland::predict_anew(const std::vector<std::size_t>& changed) {
     for (const std::size_t m : changed) {
         times_.set(m, std::numeric_limits<double>::infinity());
         for (const std::uint32_t other : neighbours_.of(m)) {
-            const auto time = meeting_of(m, other);
-            if (!time) continue;
-            note(m, *time, other);
-            note(other, *time, m);
+            note_meeting(m, other);
         }
     }
 }
@@ -363,8 +359,8 @@ void EventIsland::keep_fastest(std::vector<PairContact>& contacts, double time) 
         contact.approach = approach_of({a.position, a.velocity, {}}, {b.position, b.velocity, {}});
         fastest = std::max(fastest, contact.approach);
     }
-    // Because of rounding, all contacts may be separating. One contact is then still kept and counts as an impact, so
-    // that its members continue.
+    // Because of rounding, all contacts may be separating. One of them still counts as an impact, so that members
+    // continue.
     const double least = fastest > 0.0 ? fastest * (1.0 - kSameApproach) : fastest;
     std::erase_if(contacts, [&](const PairContact& contact) { return contact.approach < least; });
 }
@@ -373,7 +369,7 @@ void EventIsland::keep_fastest(std::vector<PairContact>& contacts, double time) 
 void EventIsland::resolve(std::vector<PairContact>& contacts, double time) {
     std::vector<std::size_t> changed;
     for (const PairContact& contact : contacts) changed.push_back(contact.first), changed.push_back(contact.second);
-    std::sort(changed.begin(), changed.end());
+    std::ranges::sort(changed);
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
     for (const std::size_t m : changed) bring(m, time);
     // Missed contacts count as impacts, too, so that every step ends.
@@ -416,7 +412,7 @@ void EventIsland::write_back(std::size_t m, const PairBody& body) {
     IslandMember& member = (*members_)[m];
     member.is_free = false;  // go_to() does not clear it for a member that is hit at the start of the step
     MovingParticle& moving = member.moving;
-    const RecordedMotion before{moving.state.position, moving.state.velocity, moving.spin};
+    const RecordedMotion before = moving.recorded_motion();
     member.pair_velocity_change += body.velocity - moving.state.velocity;
     moving.state.velocity = body.velocity;
     moving.planned = nullptr;
@@ -430,7 +426,7 @@ void EventIsland::write_back(std::size_t m, const PairBody& body) {
         part.time = moving.state.time;
         part.radius = moving.state.radius;
         part.begin = before;
-        part.end = {moving.state.position, moving.state.velocity, moving.spin};
+        part.end = moving.recorded_motion();
         member.lists.motions.push_back(part);
     }
 }

@@ -1,6 +1,5 @@
 /// \file
-/// An event-driven island: spheres that can touch each other in a step, and no others. Its impacts are solved in order
-/// of time.
+/// An event-driven island: spheres that can touch each other, and no others. Impacts are solved in order of time.
 ///
 /// Every member has a predicted path to the end of the step on which it meets no other member. The path consists of the
 /// polynomial pieces along which the response moves the member, including bounces off walls and contact with them. The
@@ -21,7 +20,6 @@
 #include "ricochet/dynamics/coupled_member.h"
 #include "ricochet/response/event_paths.h"
 #include "ricochet/response/island_neighbours.h"
-#include "ricochet/response/move_lists.h"
 #include "ricochet/response/pair_impact.h"
 #include "ricochet/response/pair_record.h"
 #include "ricochet/response/response.h"
@@ -46,10 +44,8 @@ struct IslandMember {
     bool is_cut_off = false;      ///< it has spent its impact budget
     Box3 swept{};                 ///< bounding box of the whole sphere on its whole trajectory
     bool keeps_path = false;      ///< input: `trajectory` is needed even if the member stays within its declared bounds
-    /// True if it has met other members, or others act on it from a distance. It may then leave its declared bounds.
-    bool has_left_bounds = false;
-    /// Its whole trajectory, if it has left its bounds, or if keeps_path is set.
-    std::vector<FlownPiece> trajectory{};
+    bool has_left_bounds = false;          ///< it may be outside its declared bounds: it has met others, or is coupled
+    std::vector<FlownPiece> trajectory{};  ///< whole trajectory, if has_left_bounds or keeps_path
 
     /// Appends a part of the trajectory after the member has left its bounds.
     void append_off_bounds(const std::vector<FlownPiece>& flown) {
@@ -58,8 +54,7 @@ struct IslandMember {
     }
     /// Returns true if the member no longer moves: it is absorbed or frozen.
     [[nodiscard]] bool is_gone() const { return outcome.is_absorbed() || outcome.is_frozen(); }
-    /// Returns the rest of its part of the step, in s. At the start of its planned flight this is exactly the duration
-    /// of the flight.
+    /// Returns the rest of its part of the step, in s: at the start of a planned flight exactly the flight's duration.
     [[nodiscard]] double time_left() const {
         const bool begins_flight = moving.planned != nullptr && moving.planned->start.time == moving.state.time;
         return begins_flight ? moving.planned->path.duration : end - moving.state.time;
@@ -117,6 +112,7 @@ private:
     [[nodiscard]] bool bounces_at(std::size_t m, double time) const;
     void commit(std::size_t m);
     void note(std::size_t m, double time, std::size_t partner);
+    void note_meeting(std::size_t m, std::size_t other);
     void find_all();
     void find_next(std::size_t m);
     void predict_anew(const std::vector<std::size_t>& changed);

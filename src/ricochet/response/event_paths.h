@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: paths of two spheres in a step, and their first contact.
+/// Paths of two spheres in a step, and their first contact.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,7 @@
 
 namespace ricochet {
 
-/// Returns the path of a sphere until `end`, in s. The sphere must certainly touch no wall and no other sphere until
-/// then.
+/// Returns the path of a sphere that certainly touches nothing until `end`, in s.
 [[nodiscard]] FlownPiece free_piece(const ResponseRules& rules, const ForceInput& state, double end);
 /// Returns the time, in s, at which spheres on two paths first touch, or std::nullopt if they do not. distance:
 /// distance of their centres at contact, in m. slow: largest approach speed, in m/s, that does not count as a contact.

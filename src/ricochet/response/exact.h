@@ -1,6 +1,5 @@
 /// \file
-/// The exact response: computes the time of impact on the particle's own path, and reflects within the step, as often
-/// as needed. Its functions are in particle_mover.cpp.
+/// The exact response: computes the time of impact on the particle's own path, and reflects within the step.
 ///
 /// Source: continuous collision detection against static surfaces with exact predicates, see ARCHITECTURE.md.
 ///

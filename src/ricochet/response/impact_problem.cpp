@@ -19,8 +19,8 @@ public:
     }
 
     ImpactResult solve() {
-        const bool has_friction = std::any_of(surfaces_.begin(), surfaces_.end(),
-                                              [](const ImpactSurface& surface) { return surface.friction > 0.0; });
+        const bool has_friction =
+            std::ranges::any_of(surfaces_, [](const ImpactSurface& surface) { return surface.friction > 0.0; });
         if (!has_friction || restitution_ == 0.0) return kept(whole(restitution_));
         if (const std::optional<ImpactResult> result = find(restitution_)) {
             if (!gains(*result)) return kept(*result);
@@ -29,8 +29,7 @@ public:
     }
 
 private:
-    /// Adds a surface. If several have the same normal, only the first one is used, or a later one whose approach is
-    /// faster by more than rounding.
+    /// Adds a surface. A surface with the same normal is replaced if its approach is clearly slower.
     void add(std::size_t surface) {
         const ImpactSurface& added = surfaces_[surface];
         if (!added.is_support && separation_speed(added) < 0.0)
@@ -99,8 +98,8 @@ private:
         return result;
     }
 
-    /// Removes the approach to supporting surfaces. The normal speed there is a rounding error, and the factor 1 + e on
-    /// the impulses can turn it into an approach.
+    /// Removes the approach to supporting surfaces, which the factor 1 + e on the impulses can make of a rounding
+    /// error.
     void keep_supported_only(ImpactResult& result) const {
         ShortestShift shift;
         std::size_t last = 0;
@@ -140,8 +139,7 @@ private:
         return result;
     }
 
-    /// Returns the rounding error of twice_kinetic(), in m^2/s^2. The error is larger if surfaces press against each
-    /// other.
+    /// Returns the rounding error of twice_kinetic(), in m^2/s^2. It is larger if surfaces press against each other.
     [[nodiscard]] double rounding(const ImpactResult& result) const {
         double squared_speeds = twice_kinetic(before_, radius_);
         for (const Vec3& velocity_change : result.velocity_change) squared_speeds += length_squared(velocity_change);
@@ -152,8 +150,8 @@ private:
         return twice_kinetic(result.after, radius_) > most_allowed(result) + rounding(result);
     }
 
-    /// Returns the largest allowed twice_kinetic() after the impact: its value before, plus twice the work of moving
-    /// surfaces per unit mass.
+    /// Returns the largest twice_kinetic() after the impact: that before, plus twice the work of surfaces per unit
+    /// mass.
     [[nodiscard]] double most_allowed(const ImpactResult& result) const {
         double sum = twice_kinetic(before_, radius_);
         for (std::size_t k = 0; k < surfaces_.size(); ++k) {
@@ -167,9 +165,9 @@ private:
         if (is_driven_) return result;
         const double is = twice_kinetic(result.after, radius_);
         const double was = twice_kinetic(before_, radius_);
-        const bool loses_none = restitution_ == 1.0 && was - is <= rounding(result) &&
-                                std::all_of(surfaces_.begin(), surfaces_.end(),
-                                            [](const ImpactSurface& surface) { return surface.friction == 0.0; });
+        const bool loses_none =
+            restitution_ == 1.0 && was - is <= rounding(result) &&
+            std::ranges::all_of(surfaces_, [](const ImpactSurface& surface) { return surface.friction == 0.0; });
         if (is > was || (loses_none && is > 0.0)) {
             const double part = std::sqrt(was / is);
             result.after.velocity *= part;

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: an impact on any number of surfaces at once.
+/// An impact on any number of surfaces at once.
 #pragma once
 
 #include <array>
@@ -25,8 +25,7 @@ struct ImpactSurface {
     Vec3 angular_velocity{};
     /// Speed of the surface towards the particle, in m/s; part of `velocity`.
     double advance = 0.0;
-    /// True if the particle is in lasting contact with the surface. A remaining approach speed is a rounding error and
-    /// causes no rebound of its own.
+    /// True in lasting contact. An approach speed is then a rounding error and causes no rebound of its own.
     bool is_support = false;
 };
 

@@ -29,9 +29,8 @@ bool can_be_followed(const Path& path) {
 }
 
 void ImpactResolver::release(Contact& contact) const {
-    const auto surfaces = std::span(contact.surfaces).first(static_cast<std::size_t>(contact.count));
-    const auto is_support = [](const ContactSurface& surface) { return surface.is_support; };
-    if (std::none_of(surfaces.begin(), surfaces.end(), is_support)) return;
+    const std::span<ContactSurface> surfaces = surfaces_of(contact);
+    if (std::ranges::none_of(surfaces, &ContactSurface::is_support)) return;
     const double rounding = kTurningAway * surfaces_.fastest(surfaces);
     for (ContactSurface& surface : surfaces) {
         const double separation = surfaces_.separation_speed(surface);
@@ -43,7 +42,7 @@ void ImpactResolver::release(Contact& contact) const {
 // On a single surface: resolve(), try_single(), apply_bounce(), bounce() of contact_motion.h.
 bool ImpactResolver::reflect(std::span<const ContactSurface> surfaces, bool ends_substep) {
     const auto is_met = [&](const ContactSurface& surface) { return surfaces_.is_approached(surface); };
-    if (std::none_of(surfaces.begin(), surfaces.end(), is_met)) return false;
+    if (std::ranges::none_of(surfaces, is_met)) return false;
     settle_on_supports(surfaces);
     const Vec3 before = particle_.state.velocity;
     if (scratch_.record_loads) ledger_.begin_impact(ends_substep ? surfaces_.approach(surfaces) : 0.0);
@@ -58,32 +57,30 @@ bool ImpactResolver::reflect(std::span<const ContactSurface> surfaces, bool ends
 /// impact on all surfaces together. Random reflections and impacts on dynamic bodies are resolved one after another.
 void ImpactResolver::resolve(std::span<const ContactSurface> surfaces, Rebound rebound) {
     const auto is_met = [&](const ContactSurface& surface) { return surfaces_.is_approached(surface); };
-    const auto first = std::find_if(surfaces.begin(), surfaces.end(), is_met);
+    const auto first = std::ranges::find_if(surfaces, is_met);
     if (first == surfaces.end()) return;
-    const bool is_sequential = std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& surface) {
+    const bool is_sequential = std::ranges::any_of(surfaces, [&](const ContactSurface& surface) {
         return surfaces_.material_of(surface.surface).is_random() || surfaces_.is_dynamic(surface.surface);
     });
     if (is_sequential) {
         resolve_sequentially(surfaces, rebound);
-    } else if (std::count_if(surfaces.begin(), surfaces.end(), is_met) > 1 || !try_single(surfaces, *first, rebound)) {
+    } else if (std::ranges::count_if(surfaces, is_met) > 1 || !try_single(surfaces, *first, rebound)) {
         resolve_simultaneously(surfaces, rebound);
     }
 }
 
-/// Resolves a bounce off one surface. Returns false, and changes nothing, if the particle then approaches another
-/// surface.
+/// Resolves a bounce off one surface. Returns false, and changes nothing, if that leads into another surface.
 bool ImpactResolver::try_single(std::span<const ContactSurface> surfaces, const ContactSurface& surface,
                                 Rebound rebound) {
-    const Motion before{particle_.state.velocity, particle_.spin};
+    const Motion before = particle_.motion();
     RecordedImpact impact = impact_before({&surface, 1});
     apply_bounce(surface, rebound);
     const double rounding = kProjectionRounding * length(before.velocity);
-    const bool meets_another = std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& other) {
+    const bool meets_another = std::ranges::any_of(surfaces, [&](const ContactSurface& other) {
         return surfaces_.separation_speed(other) < (other.is_support ? -rounding : 0.0);
     });
     if (meets_another) {
-        particle_.state.velocity = before.velocity;
-        particle_.spin = before.spin;
+        particle_.set_motion(before);
         return false;
     }
     ledger_.record_impulse(surface.surface, particle_.state.velocity - before.velocity, true);
@@ -93,8 +90,7 @@ bool ImpactResolver::try_single(std::span<const ContactSurface> surfaces, const 
     return true;
 }
 
-/// Applies bounce() relative to the surface's motion. Surfaces with random reflection and dynamic bodies have their own
-/// rules.
+/// Applies bounce() relative to the surface's motion, or the rules of random reflection and dynamic bodies.
 void ImpactResolver::apply_bounce(const ContactSurface& surface, Rebound rebound) {
     const Material& material = surfaces_.material_of(surface.surface);
     const double approach = -surfaces_.separation_speed(surface);
@@ -106,14 +102,13 @@ void ImpactResolver::apply_bounce(const ContactSurface& surface, Rebound rebound
     // The bounce is computed relative to the surface's material.
     const Vec3 carried = surfaces_.velocity_of(surface);
     const bool is_driven = carried != Vec3{};
-    Motion motion{particle_.state.velocity, particle_.spin};
+    Motion motion = particle_.motion();
     if (is_driven) motion.velocity -= carried;
     motion = material.is_random()
                  ? random_reflection(motion, surface, material, restitution)
                  : bounce(motion, particle_.state.radius, surface.normal, restitution, material.friction);
     if (is_driven && !outcome_.is_absorbed()) motion.velocity += carried;
-    particle_.state.velocity = motion.velocity;
-    particle_.spin = motion.spin;
+    particle_.set_motion(motion);
 }
 
 /// Absorbs the particle, or reflects it diffusely or as a mirror, by the particle's own random numbers. Source: J. C.
@@ -146,8 +141,7 @@ void ImpactResolver::bounce_off_body(const ContactSurface& surface, const Materi
                                  mobility};
     const Motion after = bounce_off_dynamic({state.velocity, particle_.spin}, state, dynamic);
     const Vec3 impulse = state.mass * (particle_.state.velocity - after.velocity);
-    particle_.state.velocity = after.velocity;
-    particle_.spin = after.spin;
+    particle_.set_motion(after);
     const Vec3 point = state.position - state.radius * surface.normal;
     surfaces_.note_given(body, {impulse, cross(point - mobility.center, impulse)});
 }
@@ -186,8 +180,8 @@ void ImpactResolver::resolve_simultaneously(std::span<const ContactSurface> surf
             all[k] = in_problem(met[k], rebound);
             is_met[k] = pass == 0 && surfaces_.is_approached(met[k]);
         }
-        const ImpactResult result = solve_impact({particle_.state.velocity, particle_.spin}, particle_.state.radius,
-                                                 std::span(all).first(met.size()));
+        const ImpactResult result =
+            solve_impact(particle_.motion(), particle_.state.radius, std::span(all).first(met.size()));
         if (leave_no_way_out(met, result.after.velocity, scale)) {
             move_out_of_corner(surfaces);
             return;
@@ -226,13 +220,12 @@ ImpactSurface ImpactResolver::in_problem(const ContactSurface& surface, Rebound 
             surface.is_support};
 }
 
-/// Returns true if, at every velocity, the particle approaches at least one of several closing surfaces. Impulses would
-/// then grow without bound.
+/// Returns true if the particle approaches a closing surface at every velocity. Impulses would grow without bound.
 bool ImpactResolver::leave_no_way_out(std::span<const ContactSurface> surfaces, const Vec3& velocity,
                                       double speed) const {
     const auto advances = [&](const ContactSurface& surface) { return surfaces_.surface_normal_speed(surface) > 0.0; };
-    if (std::none_of(surfaces.begin(), surfaces.end(), advances)) return false;
-    return std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& surface) {
+    if (std::ranges::none_of(surfaces, advances)) return false;
+    return std::ranges::any_of(surfaces, [&](const ContactSurface& surface) {
         return surfaces_.surface_normal_speed(surface) - dot(velocity, surface.normal) > kImpactResidual * speed;
     });
 }
@@ -251,8 +244,7 @@ void ImpactResolver::apply(const ImpactResult& result, std::span<const ContactSu
         if (pass > 0 && is_hit) ledger_.mark_as_repeated();
         if (is_hit) ledger_.log_contact(met[k], before);
     }
-    particle_.state.velocity = result.after.velocity;
-    particle_.spin = result.after.spin;
+    particle_.set_motion(result.after);
 }
 
 /// Removes the remaining approach speeds, which are rounding errors.
@@ -317,6 +309,43 @@ void ImpactResolver::go_with_paths(std::span<const ContactSurface> surfaces) {
         particle_.state.velocity += change;
         ledger_.record_impulse(surface.surface, change, false, Vec3{});
     }
+}
+
+/// Returns the record of an impact with the state before it. A surface no longer counts as a support if an earlier part
+/// of the impact has separated the particle from it.
+RecordedImpact ImpactResolver::impact_before(std::span<const ContactSurface> surfaces) const {
+    RecordedImpact impact;
+    if (!scratch_.record_motions) return impact;
+    impact.time = particle_.state.time;
+    impact.supported_by = scratch_.supported_by;
+    impact.before = particle_.recorded_motion();
+    const double rounding = kTurningAway * surfaces_.fastest(surfaces);
+    for (const ContactSurface& surface : surfaces) {
+        const Material& material = surfaces_.material_of(surface.surface);
+        impact.surfaces.push_back({surface.surface,
+                                   surface.normal,
+                                   surfaces_.velocity_of(surface),
+                                   {},
+                                   material.restitution,
+                                   material.restitution_threshold,
+                                   surface.is_support && surfaces_.separation_speed(surface) <= rounding});
+    }
+    return impact;
+}
+
+/// Completes the record of an impact. Random reflections and landings without a rebound are not recorded.
+void ImpactResolver::record_impact(RecordedImpact impact, std::span<const ContactSurface> surfaces, Rebound rebound) {
+    scratch_.supported_by.clear();
+    if (!scratch_.record_motions || rebound == Rebound::none) return;
+    const auto is_random = [&](const ContactSurface& surface) {
+        return surfaces_.material_of(surface.surface).is_random();
+    };
+    if (std::ranges::any_of(surfaces, is_random)) return;
+    impact.after = particle_.recorded_motion();
+    for (std::size_t k = 0; k < surfaces.size(); ++k) {
+        impact.surfaces[k].velocity_after = surfaces_.velocity_of(surfaces[k]);
+    }
+    scratch_.impacts.push_back(std::move(impact));
 }
 
 }  // namespace ricochet

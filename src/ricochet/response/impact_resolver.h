@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: resolves the impacts of one particle in one move, by the materials of the surfaces.
+/// Resolves the impacts of one particle in one move, by the materials of the surfaces.
 #pragma once
 
 #include <array>
@@ -37,8 +37,7 @@ public:
 
     /// Resolves an impact on all surfaces of a contact together. Returns false, and changes nothing, if none is
     /// approached. For the particle, dynamic bodies change their velocities at once; their positions follow their paths
-    /// until the move ends. ends_substep: true for an impact that ends the substep of a dynamic body, false for
-    /// surfaces at rest and for an impact that begins contact.
+    /// until the move ends. ends_substep: false for surfaces at rest and for an impact that begins contact.
     bool reflect(std::span<const ContactSurface> surfaces, bool ends_substep = true);
     /// Does the same without a rebound.
     void land(std::span<const ContactSurface> surfaces);

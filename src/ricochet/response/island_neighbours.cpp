@@ -10,8 +10,7 @@ namespace {
 
 /// Largest number of boxes for which each search tests all boxes.
 constexpr std::size_t kFew = 48;
-/// The grid is rebuilt when more than one in this number of boxes has changed, because each search also tests all
-/// changed boxes.
+/// The grid is rebuilt if more than one in this number of boxes has changed, because each search tests all of these.
 constexpr std::size_t kChangedShare = 8;
 
 }  // namespace
@@ -110,7 +109,7 @@ void IslandNeighbours::find(std::size_t index) {
     grid_.find_near(box, near);
     std::erase_if(near, [&](std::uint32_t other) { return has_changed_[other] != 0; });
     for (const std::uint32_t other : changed_) look_at(other);
-    std::sort(near.begin(), near.end());
+    std::ranges::sort(near);
 }
 
 }  // namespace ricochet

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: neighbours and times of next contact of an island's members.
+/// Neighbours and times of next contact of an island's members.
 #pragma once
 
 #include <cstddef>
@@ -34,8 +34,7 @@ private:
 /// Pairs of overlapping boxes, updated as boxes change one by one. Neighbours are listed in ascending order.
 class IslandNeighbours {
 public:
-    /// Finds the neighbours of all boxes. Empty boxes have no neighbours. The boxes must outlive the object, and each
-    /// call reads their present values.
+    /// Finds the neighbours of all boxes that are not empty. They must outlive the object, and each call reads them.
     void begin(const std::vector<Box3>& boxes);
     /// Updates the neighbours of changed boxes. changed: their indices, in ascending order.
     void update(std::span<const std::size_t> changed);

@@ -1,10 +1,8 @@
 #include "ricochet/response/manifold_surfaces.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "ricochet/core/tolerances.h"
@@ -42,7 +40,7 @@ bool ManifoldSurfaces::touches_next_piece(const Vec3& position) const {
         if (is_next) return true;
     }
     const double reach = kTouchingOffsets * geometry().contact_offset(state().position);
-    return std::any_of(beside_.begin(), beside_.end(), [&](const Beside& other) {
+    return std::ranges::any_of(beside_, [&](const Beside& other) {
         const CollisionWorld::Nearest nearest = geometry().nearest(other.surface, position);
         const CollisionWorld::Nearest point = geometry().nearest(manifold_[other.point].surface, position);
         return nearest.distance < point.distance - reach || (nearest.flat && !point.flat);
@@ -50,7 +48,7 @@ bool ManifoldSurfaces::touches_next_piece(const Vec3& position) const {
 }
 
 bool ManifoldSurfaces::overlaps(const Vec3& position) const {
-    return std::any_of(beside_.begin(), beside_.end(), [&](const Beside& other) {
+    return std::ranges::any_of(beside_, [&](const Beside& other) {
         return geometry().nearest(other.surface, position).distance < state().radius;
     });
 }
@@ -62,8 +60,7 @@ bool ManifoldSurfaces::has_left_face(const Vec3& position) const {
     return false;
 }
 
-/// Returns true if a face no longer supports a particle at a position. This is so if the position's projection onto the
-/// plane lies too far beyond the rim.
+/// Returns true if a position's projection onto the plane of a face lies too far beyond the rim.
 bool ManifoldSurfaces::is_beyond_rim(SurfaceId surface, const Vec3& position) const {
     const double slack = kEdgeOffsets * geometry().contact_offset(position);
     const Vec3 normal = geometry().unit_normal_of(surface, position);
@@ -79,8 +76,7 @@ void lift_middle(const SurfaceGeometry& geometry, const ContactManifold& manifol
     for (std::size_t k = 0; k < manifold.size(); ++k) {
         const ContactSurface surface = manifold[k];
         if (surface.flat) continue;
-        // The path of a sphere around an edge or a rim does not lie above the extension of the surface, so it is not
-        // lifted.
+        // The path of a sphere around an edge or a rim is not above the extension of the surface.
         const bool is_round =
             geometry.world().is_shape(surface.surface) && !geometry.nearest(surface.surface, path.c[0]).rim;
         if (radius > 0.0 && !is_round) continue;
@@ -115,8 +111,8 @@ bool ManifoldSurfaces::is_continuation(const ContactSurface& surface) const {
 }
 
 bool ManifoldSurfaces::continue_along(const Contact& contact) {
-    const bool all = std::all_of(contact.all().begin(), contact.all().end(),
-                                 [&](const ContactSurface& surface) { return is_continuation(surface); });
+    const bool all =
+        std::ranges::all_of(contact.all(), [&](const ContactSurface& surface) { return is_continuation(surface); });
     if (!all || ++seams_ > kMostSeams) return false;
     for (const ContactSurface& surface : contact.all()) manifold_.add(surface);
     crosses_seam_ = true;
@@ -124,22 +120,17 @@ bool ManifoldSurfaces::continue_along(const Contact& contact) {
 }
 
 void ManifoldSurfaces::join_impact(Contact& contact) const {
-    for (ContactSurface& surface : std::span(contact.surfaces).first(static_cast<std::size_t>(contact.count))) {
+    for (ContactSurface& surface : surfaces_of(contact)) {
         surface.is_support = surface.is_support || is_continuation(surface);
     }
-    for (std::size_t k = 0; k < manifold_.size() && contact.count < Contact::kMostSurfaces; ++k) {
-        const SurfaceId surface = manifold_[k].surface;
-        const bool is_there = std::any_of(contact.all().begin(), contact.all().end(),
-                                          [&](const ContactSurface& other) { return other.surface == surface; });
-        const CollisionWorld::Nearest nearest = geometry().nearest(surface, state().position);
-        if (is_there ||
-            nearest.distance > state().radius + kTouchingOffsets * geometry().contact_offset(state().position))
-            continue;
+    const double reach = state().radius + kTouchingOffsets * geometry().contact_offset(state().position);
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        const ContactSurface point = manifold_[k];
+        const CollisionWorld::Nearest nearest = geometry().nearest(point.surface, state().position);
+        if (nearest.distance > reach) continue;
         // For a point next to a rim, the direction from the rim consists of rounding errors.
         const bool is_beside_rim = state().radius == 0.0 && nearest.rim;
-        contact.surfaces[static_cast<std::size_t>(contact.count++)] =
-            is_beside_rim ? ContactSurface{surface, manifold_[k].normal, manifold_[k].flat, true}
-                          : ContactSurface{surface, nearest.normal, nearest.flat, true};
+        add_support(contact, is_beside_rim ? point : ContactSurface{point.surface, nearest.normal, nearest.flat});
     }
 }
 

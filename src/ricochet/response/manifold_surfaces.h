@@ -1,6 +1,5 @@
 /// \file
-/// Private to the exact response: the surfaces that support a particle on a path along them, and the seams between
-/// them.
+/// The surfaces that support a particle on a path along them, and the seams between them.
 #pragma once
 
 #include <cstddef>
@@ -34,12 +33,10 @@ public:
     /// Returns true if the particle is beyond the end of one of the manifold's faces.
     [[nodiscard]] bool has_left_face(const Vec3& position) const;
 
-    /// Handles a contact at the end of a path. A contact with a continuation of the surfaces, such as the next triangle
-    /// of a plane, is removed. The continuation then also supports the particle. The manifold's surfaces are added to
-    /// an impact on any other surface.
+    /// Handles a contact at the end of a path. Removes a contact with a continuation of the surfaces, such as the next
+    /// triangle of a plane, which then supports the particle. Otherwise calls join_impact().
     void meet(std::optional<Contact>& contact);
-    /// Adds the manifold's touched surfaces to an impact on another surface. These and their continuations are marked
-    /// as supports.
+    /// Adds the touched surfaces to an impact on another surface. Marks them and their continuations as supports.
     void join_impact(Contact& contact) const;
     /// Updates the manifold to the surfaces that still touch the particle. Adds faces that touch it at `turning_point`,
     /// the point of the path where another part of a surface begins.
@@ -68,9 +65,9 @@ private:
     int seams_ = 0;              // number of seams that the particle has crossed in the step
 };
 
-/// Lifts the middle of a path that lies behind curved surfaces, because the particle would be stopped there. The error
-/// of the cubic causes this for a point, or for a sphere that is small compared with the surface. With s from 0 to 1
-/// along the path, the lift is 4 s (1 - s) times a height. The error is 16 s^2 (1 - s)^2 times a height.
+/// Lifts the middle of a path that lies behind curved surfaces, where the particle would be stopped, by the error of
+/// the cubic for a point or a small sphere. With s from 0 to 1 along the path, the lift is 4 s (1 - s) times a height.
+/// The error is 16 s^2 (1 - s)^2 times a height.
 void lift_middle(const SurfaceGeometry& geometry, const ContactManifold& manifold, double radius, Path& path);
 
 }  // namespace ricochet

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the exact response: records the parts of a particle's step in their order.
+/// Records the parts of a particle's step in their order.
 #pragma once
 
 #include <array>
@@ -26,14 +26,12 @@ public:
         last_ = motion(), time_ = particle.state.time;
     }
 
-    /// Records a flight.
     void note_flight() {
         if (!scratch_.record_motions) return;
         if (particle_.state.time > time_) scratch_.supported_by.clear();
         add(MotionPart::Kind::flight, {}, true);
     }
-    /// Records an instantaneous change of motion, by impacts on surfaces or by release from them. Records nothing if
-    /// the motion has not changed.
+    /// Records an instantaneous change of motion, by impacts on surfaces or by release from them, if there is any.
     void note_impact() {
         if (!scratch_.record_motions) return;
         const bool is_driven = std::exchange(scratch_.driven, false) || reference_.is_moving();
@@ -41,8 +39,7 @@ public:
         add(is_driven ? MotionPart::Kind::driven : MotionPart::Kind::impact, {}, true);
     }
     /// Records contact along the first part of a path. force: force per unit mass at the start, in m/s^2. acts: false
-    /// if the velocity already contains the effect of the forces, from the start of the step. supported_by: surfaces
-    /// that supported the particle.
+    /// if the velocity contains the forces since the start of the step. supported_by: the supporting surfaces.
     void note_contact(const Vec3& force, const Path& path, bool acts, std::span<const SurfaceId> supported_by) {
         if (!acts) return note_stay(supported_by);
         if (!scratch_.record_motions) return;
@@ -62,8 +59,7 @@ public:
 
 private:
     [[nodiscard]] RecordedMotion motion() const {
-        return reference_.in_world({particle_.state.position, particle_.state.velocity, particle_.spin},
-                                   particle_.state.time);
+        return reference_.in_world(particle_.recorded_motion(), particle_.state.time);
     }
     void add_contact(const std::array<Vec3, 3>& forces, bool steady, std::span<const SurfaceId> supported_by) {
         const bool is_driven = std::exchange(scratch_.driven, false) || reference_.is_moving();

@@ -28,8 +28,8 @@ public:
           remaining_(step.remaining()) {}
 
     /// Records the impulse and moment that are missing so far, as if one surface had given them. The state must be in
-    /// world coordinates. Records nothing if forces vary or other particles act on this particle. The moment of the
-    /// forces is computed at the mean of the start and end positions.
+    /// world coordinates. Records nothing if forces vary or other particles act. The moment of the forces is that at
+    /// the mean position.
     void settle(ParticleStep& step, SurfaceId surface) const {
         const ForceField& forces = step.rules().forces;
         const bool is_coupled = step.particle().planned != nullptr || step.state().coupling != nullptr;
@@ -63,22 +63,15 @@ double rounding_on(const MovingColliders& bodies, const MovingParticle& particle
     return kFrameRounding * (length(state.velocity) + carried + state.radius * turning);
 }
 
-/// Returns the surfaces of a contact that belong to one body.
 Contact part_with(const MovingColliders& bodies, BodyId body, const Contact& contact) {
-    Contact part = contact;
-    part.count = 0;
-    for (const ContactSurface& surface : contact.all()) {
-        if (bodies.body_of(surface.surface) == body) part.surfaces[static_cast<std::size_t>(part.count++)] = surface;
-    }
-    return part;
+    return part_of(contact, [&](const ContactSurface& surface) { return bodies.body_of(surface.surface) == body; });
 }
 
 /// Returns the first surface of a contact that belongs to a dynamic body, or null.
 const ContactSurface* first_dynamic(const MovingColliders& bodies, const Contact& contact) {
     const auto surfaces = contact.all();
-    const auto found = std::find_if(surfaces.begin(), surfaces.end(), [&](const ContactSurface& surface) {
-        return bodies.is_dynamic(bodies.body_of(surface.surface));
-    });
+    const auto found = std::ranges::find_if(
+        surfaces, [&](const ContactSurface& surface) { return bodies.is_dynamic(bodies.body_of(surface.surface)); });
     return found == surfaces.end() ? nullptr : &*found;
 }
 
@@ -87,7 +80,7 @@ const ContactSurface* first_dynamic(const MovingColliders& bodies, const Contact
 bool lands_again(const MovingColliders& bodies, const SurfaceKinematics& surfaces, const Contact& contact,
                  const std::optional<double>& release_speed, double slow) {
     if (!release_speed || surfaces.approach(contact.all()) > kLandsAgain * std::max(*release_speed, slow)) return false;
-    return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
+    return std::ranges::all_of(contact.all(), [&](const ContactSurface& surface) {
         return bodies.is_dynamic(bodies.body_of(surface.surface));
     });
 }
@@ -110,8 +103,7 @@ std::optional<Contact> ParticleMover::resolve_contact_with_bodies(const Flight& 
 }
 
 ParticleMover::ImpactOnBody ParticleMover::resolve_impact_on_body(const Flight& flight, const Contact& contact) {
-    ImpactOnBody impact{{particle_.state.velocity, particle_.spin},
-                        slowest_rebound(rules_, frame_rules_, particle_, contact)};
+    ImpactOnBody impact{particle_.motion(), slowest_rebound(rules_, frame_rules_, particle_, contact)};
     has_met_moving_ = true;
     contact_phase_.remember(contact);
     ledger().note_driven();
@@ -126,9 +118,9 @@ ParticleMover::ImpactOnBody ParticleMover::resolve_impact_on_body(const Flight& 
     return impact;
 }
 
-/// Follows a receding dynamic body. A particle that separates from the body at near-zero speed would touch it
-/// repeatedly with zero impulse. The particle therefore moves with the body until they are apart. contact: replaced by
-/// the next contact. Returns false if the contact is not of this kind.
+/// Follows a receding dynamic body. A particle that separates from it at near-zero speed would touch it repeatedly with
+/// zero impulse, so it moves with the body until they are apart. contact: replaced by the next contact. Returns false
+/// if the contact is not of this kind.
 bool ParticleMover::follows_receding_body(std::optional<Contact>& contact) {
     if (!step_.has_budget() || !(step_.remaining() > 0.0)) return false;
     if (first_dynamic(rules_.bodies, *contact) == nullptr) return false;
@@ -139,12 +131,11 @@ bool ParticleMover::follows_receding_body(std::optional<Contact>& contact) {
     return step_.remaining() < before;
 }
 
-/// Returns true if the velocity of a supporting body jumps and the particle keeps its own velocity. A particle at rest
-/// follows a small jump instead.
+/// Returns true if the velocity of a supporting body jumps, but not for a particle at rest, which follows a small jump.
 bool ParticleMover::is_released_by_jump() const {
-    const std::span<const SurfaceId> supporting(particle_.contact.surfaces.data(), particle_.contact.count);
+    const std::span<const SurfaceId> supporting = particle_.contact.all();
     const auto has_jumped = [&](SurfaceId surface) { return rules_.bodies.has_jumped(rules_.bodies.body_of(surface)); };
-    if (std::none_of(supporting.begin(), supporting.end(), has_jumped)) return false;
+    if (std::ranges::none_of(supporting, has_jumped)) return false;
     if (!particle_.attachment) return true;
     return releases(rules_, frame_rules_, particle_, rules_.bodies.body_of(supporting[0]));
 }
@@ -164,9 +155,8 @@ std::optional<Contact> ParticleMover::resume_among_bodies() {
             particle_.attachment.reset();
             break;
         }
-        const bool is_shared =
-            std::any_of(contact_state.surfaces.begin(), contact_state.surfaces.begin() + contact_state.count,
-                        [&](SurfaceId surface) { return bodies.body_of(surface) != body; });
+        const bool is_shared = std::ranges::any_of(contact_state.all(),
+                                                   [&](SurfaceId surface) { return bodies.body_of(surface) != body; });
         if (is_shared || bodies.is_deforming(body)) {
             next = follow_shared();
         } else if (body == kWorldBody) {
@@ -247,8 +237,7 @@ std::optional<Contact> ParticleMover::begin_contact(const Flight& flight, const 
     return std::nullopt;
 }
 
-/// Follows contact with surfaces of several frames. A particle that does so too often in one step stays at its position
-/// for the rest of the step.
+/// Follows contact with surfaces of several frames. Gives up if this happens too often in one step.
 std::optional<Contact> ParticleMover::follow_shared() {
     if (++shared_count_ > kMostSharedContacts) {
         particle_.contact = {};
@@ -283,13 +272,12 @@ std::optional<Contact> ParticleMover::begin_in_frame(BodyId body, const Contact&
 std::optional<Contact> ParticleMover::follow_receding_body(const Contact& contact) {
     const SurfaceId surface = first_dynamic(rules_.bodies, contact)->surface;
     const BodyId body = rules_.bodies.body_of(surface);
-    const Motion own{particle_.state.velocity, particle_.spin};
+    const Motion own = particle_.motion();
     const MomentumAccount account(step_);
     Contact part = part_with(rules_.bodies, body, contact);  // the body's frame contains no other surfaces
     step_.log().note_impact();
     const auto next = follow_in_frame_unsettled(body, &part, [&](ContactPhase& phase) { return phase.stay(part); });
-    particle_.state.velocity = own.velocity;
-    particle_.spin = own.spin;
+    particle_.set_motion(own);
     account.settle(step_, surface);
     ledger().note_driven();
     step_.log().note_impact();

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the exact response: the surfaces near a particle.
+/// The surfaces near a particle.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ void visit_near_in(const ParticleStep& step, const SurfaceGeometry& geometry, co
     }
     // Callers keep the first surfaces, so the order must not depend on the broad phase.
     std::vector<std::uint32_t>& triangles = scratch.triangles;
-    std::sort(triangles.begin(), triangles.end());
+    std::ranges::sort(triangles);
     for (const std::uint32_t triangle : triangles) found(world.surface_of_triangle(triangle));
 }
 

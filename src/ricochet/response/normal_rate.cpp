@@ -1,20 +1,22 @@
 #include "ricochet/response/normal_rate.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "ricochet/core/tolerances.h"
 
 namespace ricochet {
 namespace {
 
-/// Step of the numerical derivative of a shape's normal, as a fraction of its size. Local: the error is far below that
-/// of an arc.
+/// Step of the derivative of a shape's normal, as a fraction of its size. Local: its error is far below that of an arc.
 constexpr double kCurvatureStep = 1e-4;
 
 /// Smallest scale of that step for a sphere away from rims, as a fraction of the shape's size. Over shorter steps the
 /// normals of a large shape differ only by rounding. Local: a step of a numerical derivative.
 constexpr double kSmallestScale = 1e-3;
 
-/// Returns the derivative of a shape's normal, in 1/s, as a difference of its normals along the motion. A side is
-/// extended beyond its rim.
+/// Returns the derivative of a shape's normal, in 1/s, by its normals along the motion. Sides extend beyond rims.
 Vec3 shape_normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId surface,
                        const CollisionWorld::Nearest& nearest, const Vec3& position, const Vec3& velocity) {
     const double speed = length(velocity);
@@ -39,6 +41,16 @@ Vec3 shape_normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId
         return (speed / step) * (length(ahead) < length(behind) ? ahead : behind);
     }
     return (speed / (2.0 * step)) * (ahead + behind);
+}
+
+/// Returns two unit vectors that span the directions along all surfaces with these normals. There must be at least one
+/// normal. If two normals are not parallel, only one direction remains, and the second vector is zero.
+std::array<Vec3, 2> directions_along(std::span<const Vec3> normals) {
+    for (const Vec3& normal : normals) {
+        const Vec3 line = cross(normals.front(), normal);
+        if (length(line) > kSameDirection) return {normalized(line), Vec3{}};
+    }
+    return tangent_frame(normals.front());
 }
 
 }  // namespace
@@ -67,6 +79,18 @@ Vec3 normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId surfa
         across -= dot(across, edge) * edge;
     }
     return nearest.distance > 0.0 ? across / nearest.distance : Vec3{};
+}
+
+double largest_curvature(const SurfaceGeometry& geometry, double radius, SurfaceId surface,
+                         const CollisionWorld::Nearest& nearest, const Vec3& position, std::span<const Vec3> normals) {
+    if (normals.empty()) return 0.0;
+    const auto [along, across] = directions_along(normals);
+    const Vec3 first = normal_rate(geometry, radius, surface, nearest, position, along);
+    const Vec3 second = normal_rate(geometry, radius, surface, nearest, position, across);
+    const double mean = 0.5 * (length_squared(first) + length_squared(second));
+    const double half = 0.5 * (length_squared(first) - length_squared(second));
+    const double mixed = dot(first, second);
+    return std::sqrt(mean + std::sqrt(half * half + mixed * mixed));
 }
 
 }  // namespace ricochet

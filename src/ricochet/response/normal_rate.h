@@ -1,6 +1,8 @@
 /// \file
-/// Private to the responses: the rate at which a surface's normal turns while a particle moves along it.
+/// The rate at which a surface's normal turns while a particle moves along it.
 #pragma once
+
+#include <span>
 
 #include "ricochet/collision/contact_scratch.h"
 
@@ -15,5 +17,11 @@ namespace ricochet {
 /// in m/s. nearest: the surface's nearest point to the position.
 [[nodiscard]] Vec3 normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId surface,
                                const CollisionWorld::Nearest& nearest, const Vec3& position, const Vec3& velocity);
+
+/// Returns the largest length of normal_rate(), in 1/m, for a unit velocity along all surfaces with the given normals.
+/// Returns 0 without normals. Method: largest singular value of the linear map.
+[[nodiscard]] double largest_curvature(const SurfaceGeometry& geometry, double radius, SurfaceId surface,
+                                       const CollisionWorld::Nearest& nearest, const Vec3& position,
+                                       std::span<const Vec3> normals);
 
 }  // namespace ricochet

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "ricochet/core/tolerances.h"
 
@@ -24,8 +23,7 @@ Vec3 relative_velocity(const PairBody& a, const PairBody& b, const Vec3& normal)
     return (b.velocity - a.velocity) - cross(a.radius * a.spin + b.radius * b.spin, normal);
 }
 
-/// Returns the least separation speed after an impact with this approach speed, in m/s. It is 0 if a rebound with
-/// losses would be slower than resting_speed.
+/// Returns the least separation speed after an impact, in m/s: 0 if a rebound with losses would be too slow.
 double rebound_of(const PairMaterial& law, double resting_speed, double approach) {
     const double rebound = law.restitution * approach;
     return law.restitution < 1.0 && rebound < resting_speed ? 0.0 : rebound;

@@ -1,6 +1,5 @@
 /// \file
-/// Private to the responses: contact parameters of spheres of any two materials, looked up by the numbers of the
-/// materials.
+/// Contact parameters of spheres of any two materials, looked up by the numbers of the materials.
 #pragma once
 
 #include <cmath>
@@ -27,8 +26,7 @@ namespace ricochet {
     return {settings.restitution, settings.friction, settings.rolling_friction};
 }
 
-/// Numbers of materials by name. Look-ups must be fast, because the pairs of a thousand materials need a million of
-/// them.
+/// Numbers of materials by name. The pairs of a thousand materials need a million look-ups.
 class MaterialNumbers {
 public:
     /// The names must outlive the object. If names are equal, the first one is used.

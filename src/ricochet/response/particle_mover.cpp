@@ -6,7 +6,6 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/carried_particle.h"
 #include "ricochet/response/clear_flight.h"
-#include "ricochet/response/contact_with_bodies.h"
 #include "ricochet/response/exact.h"
 #include "ricochet/response/path_motion.h"
 #include "ricochet/response/supported_acceleration.h"
@@ -16,10 +15,10 @@ namespace {
 
 /// Number of bounces in one step after which a particle does not look ahead. Such a particle is in a narrow gap, where
 /// a look-ahead always finds a surface. Without the limit the narrow cavity of `ricochet bench --suite pinball` took 6
-/// to 9 % longer (docs/decisions/2026-11-23-what-pays.md). Local, because only the cost depends on it.
+/// to 9 % longer (docs/decisions/2026-11-23-what-pays.md). Local: it affects only the cost.
 constexpr std::uint32_t kBouncesInNarrowGap = 2;
-/// Largest duration of a step, in time steps of the run. It exceeds 1 because of the rounding of the clock. Local,
-/// because only look-ahead depends on it.
+/// Largest duration of a step, in time steps of the run. It exceeds 1 because of the rounding of the clock. Local: only
+/// look-ahead depends on it.
 constexpr double kWholeStep = 1.0 + 1e-9;
 
 /// Shortens a flight to a duration, in s, along its path.
@@ -157,9 +156,8 @@ std::optional<Contact> ParticleMover::resolve_contact(const Flight& flight, Cont
     return resolve_contact_with_bodies(Flight{}, contact);
 }
 
-/// Resolves a contact with surfaces at rest.
 std::optional<Contact> ParticleMover::resolve_contact_at_rest(const Flight& flight, const Contact& contact) {
-    const Motion arriving{particle_.state.velocity, particle_.spin};
+    const Motion arriving = particle_.motion();
     contact_phase_.remember(contact);
     step_.set_resting_speed(rules_.settings.resting_speed);
     const bool is_impact = step_.impact().reflect(contact.all(), /*ends_substep=*/false);
@@ -172,8 +170,7 @@ std::optional<Contact> ParticleMover::resolve_contact_at_rest(const Flight& flig
 void ParticleMover::count_impact(const Flight& flight, bool is_impact, bool is_resumed) {
     ++(is_impact && !is_resumed ? step_.outcome().bounces : step_.outcome().touches);
     if (is_impact) release_speed_.reset();
-    // After a kick, the landing starts from the motion before the impact. Impact and landing are therefore logged as
-    // one.
+    // After a kick, the landing starts from the motion before the impact, so both are logged as one.
     if (flight.kick_duration == 0.0) step_.log().note_impact();
 }
 
@@ -189,9 +186,9 @@ std::optional<Contact> ParticleMover::begin_or_continue_contact(const Flight& fl
 /// Continues contact after an impact with the surfaces that have supported the particle, unless it separates from them.
 /// No landing takes place. At the end of a step, the surfaces are stored for the next step.
 std::optional<Contact> ParticleMover::continue_contact(const Flight& flight, const Contact& contact) {
-    const Contact supporting = supporting_surfaces(contact);
+    const Contact supporting = part_of(contact, &ContactSurface::is_support);
     if (supporting.count == 0) return std::nullopt;
-    if (step_.remaining() > 0.0) return begin_contact(flight, supporting, {particle_.state.velocity, particle_.spin});
+    if (step_.remaining() > 0.0) return begin_contact(flight, supporting, particle_.motion());
     ContactState contact_state;
     for (const ContactSurface& surface : supporting.all()) {
         const bool is_left = surfaces().separation_speed(surface) > kLeavingRounding * length(particle_.state.velocity);
@@ -212,8 +209,7 @@ void ParticleMover::finish() {
     step_.log().note_impact();
 }
 
-/// Subtracts the part of a kick that belongs to the remaining time, at an impact on a moving surface. From then on the
-/// forces act during the flight.
+/// Subtracts the kick for the remaining time, at an impact on a moving surface. Forces then act during flights.
 void ParticleMover::retract_kick(const Flight& flight) {
     if (!flies_anew_) {
         particle_.state.velocity -= step_.remaining() * flight.acceleration;

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the exact response: moves one particle over one step, as a loop over named stages.
+/// Moves one particle over one step, as a loop over named stages.
 #pragma once
 
 #include <algorithm>
@@ -55,8 +55,8 @@ private:
         Motion arriving;            ///< the motion before it
         double slowest_rebound;     ///< m/s; slower rebounds are contact
         bool ends_substep = false;  ///< a dynamic body gets another velocity at once, see ImpactResolver::reflect()
-        /// Speed, in m/s, at which a velocity jump of a body had released the particle. Set if the impact only resumes
-        /// that contact.
+        /// Speed, in m/s, at which a body's velocity jump had released the particle, if the impact resumes that
+        /// contact.
         std::optional<double> release_speed{};
     };
 
@@ -83,7 +83,7 @@ private:
     [[nodiscard]] bool is_released_by_jump() const;
 
     [[nodiscard]] bool meets_moving(const Contact& contact) const {
-        return std::any_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
+        return std::ranges::any_of(contact.all(), [&](const ContactSurface& surface) {
             return rules_.bodies.body_of(surface.surface) != kWorldBody;
         });
     }
@@ -99,8 +99,7 @@ private:
     double remaining_at_check_ = std::numeric_limits<double>::infinity();
     int shared_count_ = 0;         // number of contacts with several frames at once
     bool has_met_moving_ = false;  // true if it has touched a surface of a body in this step
-    bool flies_anew_ = false;      // true if the next flight begins after contact on a body, and does not continue the
-                                   // last one
+    bool flies_anew_ = false;      // true if the next flight begins after contact on a body
     /// True if flights in the rest of the step start without a kick. Another kick would move a particle that leaves a
     /// surface back onto it at once.
     bool is_without_impulse_ = false;

@@ -52,13 +52,12 @@ void ParticleStep::enter(BodyId body, const ResponseRules& rules, Contact* conta
     const ReferenceFrame before = reference_;
     reference_.set(body);
     rules_ = &rules;
-    const RecordedMotion motion = reference_.in_frame(
-        before.in_world({state().position, state().velocity, particle_.spin}, state().time), state().time);
+    const RecordedMotion motion =
+        reference_.in_frame(before.in_world(particle_.recorded_motion(), state().time), state().time);
     const StoredPosition& stored = chain_.stored();
     const MovingPose pose = rules.bodies.pose(body, stored.time);
     state().position = pose.local_position(stored.position);
-    state().velocity = motion.velocity;
-    particle_.spin = motion.spin;
+    particle_.set_motion({motion.velocity, motion.spin});
     // Positions are stored in world coordinates, so the contact offset must cover the rounding of these coordinates.
     const MotionBounds& bounds = rules.bodies.bounds(body);
     const double path_length = remaining() * (bounds.origin[1] + bounds.rotation[1] * length(state().position));
@@ -78,13 +77,12 @@ void ParticleStep::leave(const ResponseRules& rules, Contact* contact) {
     const std::optional<double>& substep_end = time_.substep_end();
     const bool is_at_key = substep_end && remaining() <= 0.0;
     const double time = is_at_key ? std::nextafter(*substep_end, 0.0) : state().time;
-    const RecordedMotion motion = before.in_world({state().position, state().velocity, particle_.spin}, time);
+    const RecordedMotion motion = before.in_world(particle_.recorded_motion(), time);
     reference_.set(kWorldBody);
     scratch_.driven = true;  // the change of frames rounds the motion
     rules_ = &rules;
     state().position = chain_.stored().position;
-    state().velocity = motion.velocity;
-    particle_.spin = motion.spin;
+    particle_.set_motion({motion.velocity, motion.spin});
     geometry_ = SurfaceGeometry(rules.world, scratch_.contacts.plane_cache);
     chain_.begin(state().position, scratch_);
     turn_contact(contact, before, reference_);

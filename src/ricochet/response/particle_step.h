@@ -1,6 +1,5 @@
 /// \file
-/// Private to the exact response: the state of one particle within a step. All stages of its motion use the same
-/// object.
+/// The state of one particle within a step. All stages of its motion use the same object.
 #pragma once
 
 #include <algorithm>
@@ -17,8 +16,7 @@
 
 namespace ricochet {
 
-/// Remaining time of a step, in s. A step may contain a substep that ends earlier, when the velocity of a touched body
-/// changes.
+/// Remaining time of a step, in s, and of a substep, which ends when the velocity of a touched body changes.
 class StepTime {
 public:
     explicit StepTime(double duration) : duration_(duration), remaining_(duration) {}
@@ -63,8 +61,7 @@ public:
         start_ = position;
         first_segment_ = scratch.segments.size();
     }
-    /// Returns the start of the chain in the reference frame. If the particle was placed on a surface, this is its
-    /// position beside the surface.
+    /// Returns the start of the chain in the reference frame, beside the surface on which the particle was placed.
     [[nodiscard]] const Vec3& start() const { return start_; }
     /// Returns the index of the chain's first segment in MoveScratch::segments.
     [[nodiscard]] std::size_t first_segment() const { return first_segment_; }
@@ -84,7 +81,7 @@ private:
 /// - impact_resolver.h resolves impacts.
 /// - contact_phase.h follows contact.
 ///
-/// All of them refer to the same MovingParticle, which the caller of the response stores after the move.
+/// All of them refer to the same MovingParticle.
 class ParticleStep {
 public:
     /// rules, particle and scratch must outlive the object.
@@ -100,8 +97,7 @@ public:
     [[nodiscard]] MoveScratch& scratch() const { return scratch_; }
     [[nodiscard]] const SurfaceGeometry& geometry() const { return geometry_; }
     [[nodiscard]] const ReferenceFrame& reference() const { return reference_; }
-    /// Changes the reference frame from the world to that of a body. rules: rules of that frame. Also transforms the
-    /// contact's normals.
+    /// Changes the reference frame from the world to that of a body, with its rules. Also turns the contact's normals.
     void enter(BodyId body, const ResponseRules& rules, Contact* contact);
     /// Changes the reference frame back to the world.
     void leave(const ResponseRules& rules, Contact* contact);
@@ -134,8 +130,7 @@ public:
     [[nodiscard]] PathClock clock_of(const Path& path) const;
     /// Returns false if all moving colliders stay away from the path.
     [[nodiscard]] bool is_among_bodies(const Path& path) const;
-    /// Returns true if a moving collider, or the body of the reference frame, may come to the particle's position in
-    /// the time left.
+    /// Returns true if a moving collider, or the frame's body, may come to the particle's position in the time left.
     [[nodiscard]] bool is_near_bodies() const {
         return is_among_bodies(line_path(particle_.state.position, Vec3{}, remaining()));
     }
@@ -145,11 +140,10 @@ public:
     /// Returns the speed of the slowest rebound, in m/s: the scene's resting speed, or more for a dynamic body.
     [[nodiscard]] double resting_speed() const { return resting_speed_; }
     void set_resting_speed(double speed) { resting_speed_ = speed; }
-    /// Counts a contact interval.
     void note_interval() { ++intervals_; }
     /// Returns false if the budget of bounces is used up. The first kFreeIntervals contact intervals are free. After
-    /// these, kIntervalsOfBounce intervals count as one bounce. Without this rule, fast sliding in a round shape of
-    /// nearly the sphere's size could use kFreeIntervals intervals after every impact.
+    /// these, kIntervalsOfBounce intervals count as one bounce. Otherwise, fast sliding in a round shape of nearly the
+    /// sphere's size could use kFreeIntervals intervals per impact.
     [[nodiscard]] bool has_budget() const {
         const std::uint32_t intervals = std::max(intervals_, kFreeIntervals) - kFreeIntervals;
         const std::uint32_t spent = particle_.bounces_before + outcome_.meetings() + intervals / kIntervalsOfBounce;

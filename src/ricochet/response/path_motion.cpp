@@ -9,7 +9,6 @@
 namespace ricochet {
 namespace {
 
-/// Progress along a path.
 struct PathProgress {
     std::optional<Contact> contact{};
     double elapsed = 0.0;  ///< s
@@ -33,7 +32,7 @@ std::optional<Contact> first_contact_among_bodies(ParticleStep& step, const Cont
     return MovingSweep(surfaces, step.geometry(), query, start, step.scratch().contacts).first_contact();
 }
 
-/// Follows a path among moving colliders, piece by piece, up to a contact.
+/// Follows a path among moving colliders, piece by piece, up to a contact. Does not advance the particle's time.
 PathProgress follow_among_bodies(ParticleStep& step, const ContactQuery& query) {
     const SurfacesInTime surfaces = surfaces_along(step, query.path);
     const PathPoint start = surfaces.stored(step.chain().stored().position);
@@ -43,14 +42,13 @@ PathProgress follow_among_bodies(ParticleStep& step, const ContactQuery& query) 
         const double begin = sweep.begin();
         ContactQueryResult found = sweep.sweep(surfaces.stored(step.chain().stored().position, begin));
         const ContactQuery of_piece{sweep.path(), query.radius, nullptr, {}, query.supports};
-        const double elapsed = move_certified_within(step, of_piece, found, sweep.clock());
+        const double elapsed = move_certified(step, of_piece, found, sweep.clock());
         if (found.contact) progress.contact = found.contact;
         const bool has_gone = elapsed >= sweep.path().duration;
         progress.elapsed = has_gone ? sweep.begin() : begin + elapsed;
         if (progress.contact) progress.contact->time = progress.elapsed;
         if (!has_gone) break;
     }
-    step.pass(progress.elapsed);
     return progress;
 }
 
@@ -87,6 +85,7 @@ std::optional<Contact> follow_flight(ParticleStep& step, const Flight& flight, c
     ForceInput& state = step.state();
     const Vec3 initial_velocity = state.velocity;
     const auto finish = [&](double elapsed) {
+        step.pass(elapsed);
         state.velocity = velocity_at(integrator, step.rules().forces, flight, elapsed);
         record_flown(step, path, elapsed, initial_velocity, true);
     };
@@ -98,7 +97,8 @@ std::optional<Contact> follow_flight(ParticleStep& step, const Flight& flight, c
     }
     const ContactQuery query{path, state.radius, look_ahead, candidates};
     ContactQueryResult found = find_first_contact(step.geometry(), query, step.scratch().contacts);
-    finish(move_certified(step, query, found));  // a surface that blocks the path can replace found.contact
+    finish(move_certified(step, query, found,
+                          step.clock_of(query.path)));  // a surface that blocks the path can replace found.contact
     if (look_ahead != nullptr && !found.contact && state.position == path.end) {
         MoveOutcome& outcome = step.outcome();
         outcome.free_for = std::max(0.0, found.ahead.free_until - path.duration);
@@ -106,10 +106,6 @@ std::optional<Contact> follow_flight(ParticleStep& step, const Flight& flight, c
         outcome.candidates = found.ahead.candidates;
     }
     return found.contact;
-}
-
-std::optional<Contact> follow_path(ParticleStep& step, const Path& path, std::span<const SurfaceId> supports) {
-    return follow_path(step, path, supports, [](double, const Path&) { return std::optional<Path>(); });
 }
 
 std::optional<Contact> follow_path(ParticleStep& step, const Path& path, std::span<const SurfaceId> supports,
@@ -120,13 +116,14 @@ std::optional<Contact> follow_path(ParticleStep& step, const Path& path, std::sp
     Path followed = path;
     const ContactQuery query{followed, state.radius, nullptr, {}, supports};
     const auto is_refined = [&](const std::optional<Contact>& contact) {
-        const std::optional<Path> next = contact ? refine(contact->time, followed) : std::nullopt;
+        const std::optional<Path> next = contact && refine ? refine(contact->time, followed) : std::nullopt;
         // A cubic of almost zero duration has coefficients that are too large. The longer path is accurate enough.
         if (!next || !can_be_followed(*next)) return false;
         followed = *next;
         return true;
     };
     const auto finish = [&](double elapsed) {
+        step.pass(elapsed);
         state.velocity = followed.velocity(elapsed);
         record_flown(step, followed, elapsed, initial_velocity, false);
     };
@@ -139,7 +136,7 @@ std::optional<Contact> follow_path(ParticleStep& step, const Path& path, std::sp
     }
     ContactQueryResult found = find_first_contact(step.geometry(), query, step.scratch().contacts);
     while (is_refined(found.contact)) found = find_first_contact(step.geometry(), query, step.scratch().contacts);
-    finish(move_certified(step, query, found));
+    finish(move_certified(step, query, found, step.clock_of(query.path)));
     return found.contact;
 }
 
@@ -168,6 +165,7 @@ std::optional<Contact> wait_in_place(ParticleStep& step, double duration, std::s
         return std::nullopt;
     }
     const PathProgress progress = follow_among_bodies(step, {here, state.radius, nullptr, {}, supports});
+    step.pass(progress.elapsed);
     if (!progress.contact) state.position = here.end;  // exact to the last bit, however its frame moves
     record_flown(step, here, progress.elapsed, Vec3{}, false);
     return progress.contact;

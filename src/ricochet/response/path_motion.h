@@ -1,11 +1,11 @@
 /// \file
-/// Private to the exact response: moves a particle along a path, in free flight or along surfaces, up to the first
-/// contact.
+/// Moves a particle along a path, in free flight or along surfaces, up to the first contact.
 ///
 /// Each function finds the first contact, moves the particle there in certified segments, and advances its time. A path
 /// whose numbers are too large cannot be followed: the particle is frozen.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -16,43 +16,24 @@
 namespace ricochet {
 
 /// Follows a flight to its end or to the contact that is returned. With a look-ahead (null: none) the outcome says how
-/// long the particle remains free. Afterwards the particle has its velocity of arrival, before the impact. candidates:
-/// see ContactQuery.
+/// long the particle remains free. The particle gets its velocity before the impact. candidates: see ContactQuery.
 std::optional<Contact> follow_flight(ParticleStep& step, const Flight& flight, const Integrator& integrator,
                                      const LookAhead* look_ahead, const ContactCandidates& candidates);
 
-/// Reference to a function object that refines an approximate path. After a contact at a time on the path, the function
-/// returns a shorter path. It returns nothing if the path is close enough to the true motion at that time. The function
-/// object must outlive the reference.
-class PathRefinement {
-public:
-    template <class Refine>
-    PathRefinement(const Refine& refine)  // NOLINT(google-explicit-constructor): a lambda is passed in its place
-        : object_(&refine), call_([](const void* object, double time, const Path& path) -> std::optional<Path> {
-              return (*static_cast<const Refine*>(object))(time, path);
-          }) {}
-    [[nodiscard]] std::optional<Path> operator()(double time, const Path& path) const {
-        return call_(object_, time, path);
-    }
+/// Refines an approximate path. After a contact at a time on the path, in s, it returns a shorter path, or nothing if
+/// the path is close enough.
+using PathRefinement = std::function<std::optional<Path>(double time, const Path& path)>;
 
-private:
-    const void* object_;
-    std::optional<Path> (*call_)(const void*, double, const Path&);
-};
+/// Follows a path. The particle gets the path's velocity. supports: see ContactQuery. After a contact it tries the path
+/// that `refine` returns instead, as long as there is one.
+std::optional<Contact> follow_path(ParticleStep& step, const Path& path, std::span<const SurfaceId> supports = {},
+                                   const PathRefinement& refine = nullptr);
 
-/// Follows a path. The particle gets the velocity of the path. supports: surfaces along which the path leads, see
-/// ContactQuery.
-std::optional<Contact> follow_path(ParticleStep& step, const Path& path, std::span<const SurfaceId> supports = {});
-/// Follows an approximate path. After a contact it tries the refined path instead, as long as `refine` returns one.
-std::optional<Contact> follow_path(ParticleStep& step, const Path& path, std::span<const SurfaceId> supports,
-                                   const PathRefinement& refine);
-
-/// Limits how often a path is refined. A cubic between two states approximates the true motion to the fourth power of
-/// its duration, so few refinements suffice.
+/// Limits how often a path is refined. The error of a cubic is of fourth order in time, so few refinements suffice.
 class RefinementBudget {
 public:
-    /// Returns true if the path should be refined. on_path and true_position: positions at the contact's time. offset:
-    /// contact offset there, in m.
+    /// Returns true if a path should be refined, by its position and the true one at a contact. offset: contact offset,
+    /// in m.
     [[nodiscard]] bool may_improve(const Vec3& on_path, const Vec3& true_position, double offset) {
         return length(true_position - on_path) > kTouchingOffsets * offset && ++refinements_ <= kMost;
     }
@@ -65,12 +46,10 @@ private:
 /// Follows a straight path that is known to touch nothing.
 void follow_clear_path(ParticleStep& step, const Path& line);
 
-/// Keeps the particle at its position for a duration, in s. Returns a contact if a collider moves to it. supports: see
-/// ContactQuery.
+/// Keeps the particle at its position for a duration, in s, or until a collider moves to it.
 std::optional<Contact> wait_in_place(ParticleStep& step, double duration, std::span<const SurfaceId> supports = {});
 
-/// Returns the first contact of a ball of the given radius, in m, on a path in the world, among moving colliders. Moves
-/// nothing.
+/// Returns the first contact of a ball of a radius, in m, on a path in the world, among moving colliders.
 [[nodiscard]] std::optional<Contact> first_contact_of_ball(ParticleStep& step, const Path& path, double radius,
                                                            std::span<const SurfaceId> supports);
 

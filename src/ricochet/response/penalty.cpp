@@ -8,14 +8,12 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/response/impact_resolver.h"
-#include "ricochet/response/side_watch.h"
 #include "ricochet/response/supported_acceleration.h"
 
 namespace ricochet {
 namespace {
 
-/// Number of halvings of the bracket of a damping ratio. Local, because the bisection ends below the rounding of its
-/// result.
+/// Number of halvings of the bracket of a damping ratio. Local: it ends below rounding.
 constexpr int kHalvings = 64;
 
 /// Damping ratio above that of every restitution in use. Local: the upper end of a bracket.
@@ -40,11 +38,16 @@ struct ContactForces {
     Vec3 spin_acceleration;  ///< rad/s^2
 };
 
-/// Position and motion.
 struct BodyState {
     Vec3 position;
     Motion motion;
 };
+
+/// Returns a state after t, in s, at a constant velocity, in m/s, and constant accelerations.
+BodyState moved(const BodyState& now, const Vec3& velocity, const ContactForces& forces, double t) {
+    return {now.position + t * velocity,
+            {now.motion.velocity + t * forces.acceleration, now.motion.spin + t * forces.spin_acceleration}};
+}
 
 /// Scratch lists of one thread.
 struct PenaltyScratch {
@@ -52,7 +55,6 @@ struct PenaltyScratch {
     std::vector<Proximity> stage;
 };
 
-/// One particle in one step.
 class PenaltyMover {
 public:
     PenaltyMover(const ResponseRules& rules, const SignedDistance& distance, std::span<const double> damping_ratios,
@@ -96,7 +98,6 @@ private:
     std::vector<Proximity>& stage_;  // contacts at a stage of the integrator
 };
 
-/// Takes all sub-steps.
 MoveOutcome PenaltyMover::run(double duration) {
     const double h = duration / rules_.settings.penalty.substeps;
     substep_ = h;
@@ -118,8 +119,7 @@ SupportedAcceleration PenaltyMover::supported_acceleration(const Vec3& pull) {
     substep_ = rules_.settings.time_step / rules_.settings.penalty.substeps;
     seen_.clear();
     if (watch_.in_contact()) watch_.find_near(state_.position, state_.position, 0.0, seen_);
-    const ContactForces contact_force =
-        force_at({state_.position, {state_.velocity, particle_.spin}}, state_.time, seen_, 0.0);
+    const ContactForces contact_force = force_at({state_.position, particle_.motion()}, state_.time, seen_, 0.0);
     return {pull + (contact_force.acceleration - rules_.forces.acceleration(state_)), contact_force.spin_acceleration};
 }
 
@@ -135,13 +135,12 @@ void PenaltyMover::survey(double duration) {
 /// Takes one sub-step. Returns false if the new state is out of range. The state is then unchanged.
 bool PenaltyMover::substep(double h) {
     const Vec3 from = state_.position;
-    auto next = stepped({from, {state_.velocity, particle_.spin}}, h);
+    auto next = stepped({from, particle_.motion()}, h);
     if (!next || !is_finite(next->motion.velocity)) return false;
     next->position = flush_tiny(next->position);
     if (!find_contacts(next->position, seen_)) return false;
     state_.position = next->position;
-    state_.velocity = next->motion.velocity;
-    particle_.spin = next->motion.spin;
+    particle_.set_motion(next->motion);
     if (scratch_.record_segments) scratch_.segments.push_back({from, state_.position, state_.time});
     state_.time += h;
     begin_contacts();
@@ -166,18 +165,16 @@ std::optional<BodyState> PenaltyMover::stepped(const BodyState& now, double h) {
             break;
     }
     const ContactForces k = force_at(now, state_.time, seen_, h);
-    const Motion motion{now.motion.velocity + h * k.acceleration, now.motion.spin + h * k.spin_acceleration};
     const bool drifts_first = rules_.settings.integrator.kind == IntegratorKind::forward_euler;
-    return BodyState{now.position + h * (drifts_first ? now.motion.velocity : motion.velocity), motion};
+    return moved(now, drifts_first ? now.motion.velocity : now.motion.velocity + h * k.acceleration, k, h);
 }
 
 /// Takes a step of velocity Verlet (L. Verlet 1967; velocity form: W. C. Swope et al., J. Chem. Phys. 76, 1982). Forces
 /// that depend on the velocity use the velocity predicted with the first force.
 std::optional<BodyState> PenaltyMover::verlet(const BodyState& now, double h) {
     const ContactForces k0 = force_at(now, state_.time, seen_, 0.5 * h);
-    BodyState next;
-    next.position = flush_tiny(now.position + h * now.motion.velocity + (0.5 * h * h) * k0.acceleration);
-    next.motion = {now.motion.velocity + h * k0.acceleration, now.motion.spin + h * k0.spin_acceleration};
+    BodyState next = moved(now, now.motion.velocity, k0, h);
+    next.position = flush_tiny(next.position + (0.5 * h * h) * k0.acceleration);
     if (!find_contacts(next.position, stage_)) return std::nullopt;
     const ContactForces k1 = force_at(next, state_.time + h, stage_, 0.5 * h);
     next.motion = {now.motion.velocity + (0.5 * h) * (k0.acceleration + k1.acceleration),
@@ -187,14 +184,10 @@ std::optional<BodyState> PenaltyMover::verlet(const BodyState& now, double h) {
 
 std::optional<BodyState> PenaltyMover::midpoint(const BodyState& now, double h) {
     const ContactForces k0 = force_at(now, state_.time, seen_, 0.0);
-    const double half = 0.5 * h;
-    const BodyState middle{
-        now.position + half * now.motion.velocity,
-        {now.motion.velocity + half * k0.acceleration, now.motion.spin + half * k0.spin_acceleration}};
+    const BodyState middle = moved(now, now.motion.velocity, k0, 0.5 * h);
     if (!find_contacts(middle.position, stage_)) return std::nullopt;
-    const ContactForces k = force_at(middle, state_.time + half, stage_, h);
-    return BodyState{now.position + h * middle.motion.velocity,
-                     {now.motion.velocity + h * k.acceleration, now.motion.spin + h * k.spin_acceleration}};
+    const ContactForces k = force_at(middle, state_.time + 0.5 * h, stage_, h);
+    return moved(now, middle.motion.velocity, k, h);
 }
 
 std::optional<BodyState> PenaltyMover::rk4(const BodyState& now, double h) {
@@ -205,8 +198,7 @@ std::optional<BodyState> PenaltyMover::rk4(const BodyState& now, double h) {
     Vec3 velocity = now.motion.velocity;
     for (std::size_t i = 0; i < kAt.size(); ++i) {
         const double s = kAt[i] * h;
-        const BodyState stage{now.position + s * velocity,
-                              {now.motion.velocity + s * k.acceleration, now.motion.spin + s * k.spin_acceleration}};
+        const BodyState stage = moved(now, velocity, k, s);
         if (i > 0 && !find_contacts(stage.position, stage_)) return std::nullopt;
         k = force_at(stage, state_.time + s, i > 0 ? stage_ : seen_, kWeights[i] * h);
         velocity = stage.motion.velocity;
@@ -264,8 +256,7 @@ ContactForces PenaltyMover::force_at(const BodyState& body, double time, const s
     return contact_force;
 }
 
-/// Counts and records the contacts that begin at the particle's position. On surfaces that absorb or reflect at random,
-/// contacts are resolved at once as impacts.
+/// Records the contacts that begin at the particle's position. Contacts with random surfaces are impacts.
 void PenaltyMover::begin_contacts() {
     for (const Proximity& view : seen_) {
         if (watch_.memory(view.collider).touching) continue;
@@ -345,7 +336,7 @@ ContactForce force_of(const PenaltyContact& contact, const Motion& motion, doubl
     return result;
 }
 
-PenaltyResponse::PenaltyResponse(const ResponseRules& rules) : Response(rules), distance_(rules.world) {
+PenaltyResponse::PenaltyResponse(const ResponseRules& rules) : SidedResponse(rules) {
     for (const Material& material : rules.materials) damping_ratios_.push_back(damping_ratio(material.restitution));
 }
 
@@ -359,14 +350,6 @@ SupportedAcceleration PenaltyResponse::supported_acceleration(const MovingPartic
     PenaltyScratch lists;
     return PenaltyMover(rules_, distance_, damping_ratios_, probe.particle, probe.scratch, lists)
         .supported_acceleration(pull);
-}
-
-void PenaltyResponse::first_sides(const Vec3& position, std::span<SideMemory> sides) const {
-    set_first_sides(distance_, position, sides);
-}
-
-void PenaltyResponse::inherit_sides(const ChildStart& start, std::span<SideMemory> sides) const {
-    settle_child_sides(distance_, start, sides);
 }
 
 }  // namespace ricochet

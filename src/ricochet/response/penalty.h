@@ -11,9 +11,8 @@
 /// The force on a particle at depth d is max(0, k d + c d') along the normal. Friction mu N acts against the slip; it
 /// grows linearly up to PenaltySettings::friction_speed. No braking force exceeds the force that stops its motion in
 /// one sub-step. The scene's integrator uses the contact force as part of the acceleration, in sub-steps. The
-/// integrator `ballistic`, which keeps forces constant over a step, is replaced by velocity Verlet. Both give the same
-/// parabola under a constant force. On surfaces that absorb or reflect diffusely, the start of a contact is resolved at
-/// once as an impact.
+/// integrator `ballistic`, which keeps forces constant over a step, is replaced by velocity Verlet. On surfaces that
+/// absorb or reflect diffusely, the start of a contact is resolved as an impact.
 ///
 /// Limits:
 /// - Particles enter surfaces. The depth is m g / k under weight, and v sqrt(m / k) in an impact.
@@ -31,9 +30,8 @@
 ///   point.
 #pragma once
 
-#include "ricochet/collision/signed_distance.h"
 #include "ricochet/response/contact_motion.h"
-#include "ricochet/response/response.h"
+#include "ricochet/response/side_watch.h"
 
 namespace ricochet {
 
@@ -49,8 +47,7 @@ struct ContactSpring {
 /// Returns the restitution of a damping ratio >= 0: the inverse of damping_ratio().
 [[nodiscard]] double restitution_of_damping(double ratio);
 
-/// Returns the spring constant, in N/m, for a particle of mass m, in kg: the scene's value, or the value that
-/// PenaltySettings::contact_steps determines.
+/// Returns the spring constant, in N/m, for a mass, in kg: the scene's, or by PenaltySettings::contact_steps.
 [[nodiscard]] double contact_stiffness(const ResponseSettings& settings, double mass);
 /// Returns the spring and damper for a particle of mass m, in kg, on a surface of restitution e.
 [[nodiscard]] ContactSpring contact_spring(const ResponseSettings& settings, double mass, double restitution);
@@ -85,26 +82,21 @@ struct ContactLimits {
 };
 
 /// Returns the force of a contact: max(0, k d + c d') along the normal, friction against the slip, moments against
-/// rolling and spinning. The braking parts (the damper, friction, the moments) are at most as large as needed to stop
-/// the motion that they brake within the step. Without this limit, an explicit step would reverse the motion and add
-/// energy.
+/// rolling and spinning. The damper, friction and the moments at most stop their motion within the step. Otherwise, an
+/// explicit step would reverse the motion and add energy.
 [[nodiscard]] ContactForce force_of(const PenaltyContact& contact, const Motion& motion, double radius,
                                     const ContactLimits& limits);
 
 /// See the top of this file.
-class PenaltyResponse final : public Response {
+class PenaltyResponse final : public SidedResponse {
 public:
     explicit PenaltyResponse(const ResponseRules& rules);
 
     MoveOutcome move(MovingParticle& particle, double duration, MoveScratch& scratch) const override;
     [[nodiscard]] SupportedAcceleration supported_acceleration(const MovingParticle& particle,
                                                                const Vec3& pull) const override;
-    [[nodiscard]] bool keeps_sides() const override { return true; }
-    void first_sides(const Vec3& position, std::span<SideMemory> sides) const override;
-    void inherit_sides(const ChildStart& start, std::span<SideMemory> sides) const override;
 
 private:
-    SignedDistance distance_;
     std::vector<double> damping_ratios_;  ///< one per material
 };
 

@@ -1,18 +1,15 @@
 #include "ricochet/response/project.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/response/impact_resolver.h"
-#include "ricochet/response/side_watch.h"
 #include "ricochet/response/supported_acceleration.h"
 
 namespace ricochet {
 namespace {
 
-/// One particle in one step.
 class Projector {
 public:
     Projector(const ResponseRules& rules, const SignedDistance& distance, MovingParticle& particle,
@@ -29,8 +26,7 @@ public:
         contacts_.clear();
     }
 
-    /// Returns the surfaces that the particle touches at its position. A surface is touched if it is nearer than twice
-    /// the offset at which particles are placed.
+    /// Returns the surfaces that the particle touches: they are nearer than twice the offset of placed particles.
     std::span<const ContactSurface> touched() {
         watch_.find_near(from_, from_, 2.0 * offset(), seen_);
         for (const Proximity& view : seen_) touch(view);
@@ -50,8 +46,8 @@ public:
     }
 
 private:
-    /// Moves the particle through the whole step, in as many flights as the integrator needs. Returns false if the
-    /// state cannot be followed.
+    /// Moves the particle through the whole step, in one or more flights. Returns false if the state cannot be
+    /// followed.
     bool fly(double duration) {
         const double end = state_.time + duration;
         Flight flight;
@@ -86,8 +82,8 @@ private:
             watch_.find_near(position, from_, offset(), seen_);
             ++outcome_.trials;
             for (const Proximity& view : seen_) touch(view);
-            const auto deepest = std::min_element(seen_.begin(), seen_.end(),
-                                                  [](const auto& a, const auto& b) { return a.distance < b.distance; });
+            const auto deepest =
+                std::ranges::min_element(seen_, [](const auto& a, const auto& b) { return a.distance < b.distance; });
             if (deepest == seen_.end() || (deepest->distance >= 0.0 && !deepest->behind)) {
                 watch_.settle(seen_);
                 return position;
@@ -100,16 +96,15 @@ private:
     }
 
     void touch(const Proximity& view) {
-        const auto known = std::any_of(contacts_.begin(), contacts_.end(),
-                                       [&](const ContactSurface& c) { return c.surface == view.surface; });
+        const auto known =
+            std::ranges::any_of(contacts_, [&](const ContactSurface& c) { return c.surface == view.surface; });
         if (!known) contacts_.push_back({view.surface, view.normal, true});
     }
 
     /// Resolves an impact if the particle approaches one of the surfaces.
     void resolve(double duration) {
-        const bool approaches = std::any_of(contacts_.begin(), contacts_.end(), [&](const ContactSurface& contact) {
-            return dot(state_.velocity, contact.normal) < 0.0;
-        });
+        const bool approaches = std::ranges::any_of(
+            contacts_, [&](const ContactSurface& contact) { return dot(state_.velocity, contact.normal) < 0.0; });
         if (!approaches) return;
         ++outcome_.bounces;
         if (is_slow(duration)) {
@@ -120,10 +115,9 @@ private:
         if (state_.velocity == Vec3{} && !outcome_.is_absorbed()) outcome_.end = MoveEnd::resting;
     }
 
-    /// Returns true if all rebounds are slower than the resting speed. The velocity that forces have added in this step
-    /// does not count as impact speed.
+    /// Returns true if all rebounds are slower than the resting speed, without the velocity by forces in this step.
     [[nodiscard]] bool is_slow(double duration) const {
-        return std::all_of(contacts_.begin(), contacts_.end(), [&](const ContactSurface& contact) {
+        return std::ranges::all_of(contacts_, [&](const ContactSurface& contact) {
             const double towards = -dot(state_.velocity, contact.normal);
             if (towards <= 0.0) return true;
             const Material& material = impact_.surfaces().material_of(contact.surface);
@@ -159,14 +153,6 @@ SupportedAcceleration ProjectResponse::supported_acceleration(const MovingPartic
     SideScratch lists;
     return acceleration_on(rules_, particle, pull,
                            Projector(rules_, distance_, probe.particle, probe.scratch, lists).touched());
-}
-
-void ProjectResponse::first_sides(const Vec3& position, std::span<SideMemory> sides) const {
-    set_first_sides(distance_, position, sides);
-}
-
-void ProjectResponse::inherit_sides(const ChildStart& start, std::span<SideMemory> sides) const {
-    settle_child_sides(distance_, start, sides);
 }
 
 }  // namespace ricochet

@@ -21,25 +21,18 @@
 /// - Corners of several colliders may stay unsolved after kMaxProjections passes.
 #pragma once
 
-#include "ricochet/collision/signed_distance.h"
-#include "ricochet/response/response.h"
+#include "ricochet/response/side_watch.h"
 
 namespace ricochet {
 
 /// See the top of this file.
-class ProjectResponse final : public Response {
+class ProjectResponse final : public SidedResponse {
 public:
-    explicit ProjectResponse(const ResponseRules& rules) : Response(rules), distance_(rules.world) {}
+    using SidedResponse::SidedResponse;
 
     MoveOutcome move(MovingParticle& particle, double duration, MoveScratch& scratch) const override;
     [[nodiscard]] SupportedAcceleration supported_acceleration(const MovingParticle& particle,
                                                                const Vec3& pull) const override;
-    [[nodiscard]] bool keeps_sides() const override { return true; }
-    void first_sides(const Vec3& position, std::span<SideMemory> sides) const override;
-    void inherit_sides(const ChildStart& start, std::span<SideMemory> sides) const override;
-
-private:
-    SignedDistance distance_;
 };
 
 }  // namespace ricochet

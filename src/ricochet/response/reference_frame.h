@@ -1,5 +1,5 @@
 /// \file
-/// Private to the exact response: reference frames of bodies, for particles in contact with them.
+/// Reference frames of bodies, for particles in contact with them.
 #pragma once
 
 #include <memory>
@@ -55,8 +55,7 @@ public:
         return std::nullopt;
     }
     [[nodiscard]] bool is_steady() const override { return false; }
-    /// Returns the rate, in rad/s^2, at which the spin of a particle changes without contact. The spin is relative to
-    /// the frame and in its axes.
+    /// Returns the change of a free particle's spin, in rad/s^2. The spin is relative to the frame and in its axes.
     [[nodiscard]] Vec3 spin_change(const Vec3& spin, double time) const;
 
 private:

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "ricochet/core/error.h"
@@ -20,14 +19,8 @@
 namespace ricochet {
 namespace {
 
-constexpr std::array<std::pair<ResponseKind, std::string_view>, 4> kNames{{
-    {ResponseKind::exact, "exact"},
-    {ResponseKind::rollback, "rollback"},
-    {ResponseKind::project, "project"},
-    {ResponseKind::penalty, "penalty"},
-}};
-constexpr std::array<ResponseKind, 4> kKinds{ResponseKind::exact, ResponseKind::rollback, ResponseKind::project,
-                                             ResponseKind::penalty};
+constexpr std::array kKinds{ResponseKind::exact, ResponseKind::rollback, ResponseKind::project, ResponseKind::penalty};
+constexpr std::array<std::string_view, 4> kNames{"exact", "rollback", "project", "penalty"};  // in the order of kKinds
 
 void require(const auto& settings, const auto& table, std::string_view owner) {
     const std::string refused = first_refusal(settings, table, owner);
@@ -41,8 +34,7 @@ void check(const ResponseSettings& settings) {
     require(settings.integrator.tolerance, kToleranceTable, "tolerance.");
 }
 
-/// Rejects adaptive methods if particles step together or in sub-steps, because a particle then cannot choose its step
-/// size. Rejects implicit methods for sub-steps.
+/// Rejects adaptive methods if particles step together or in sub-steps, and implicit methods for sub-steps.
 void check_integrator(ResponseKind kind, const ResponseSettings& settings) {
     const bool together = kind == ResponseKind::rollback && settings.rollback.global;
     const bool is_adaptive = settings.integrator.kind == IntegratorKind::dormand_prince;
@@ -77,17 +69,46 @@ void check_flow(ResponseKind kind, const ResponseRules& rules) {
 
 }  // namespace
 
+void MoveLists::clear() {
+    hits.clear(), records.clear(), segments.clear(), motions.clear(), impacts.clear(), loads.clear();
+}
+
+void MoveLists::take(MoveLists& others) {
+    std::swap(*this, others);
+    others.clear();
+}
+
+void MoveLists::append(const MoveLists& more) {
+    const auto append_to = [](auto& list, const auto& others) {
+        list.insert(list.end(), others.begin(), others.end());
+    };
+    append_to(hits, more.hits);
+    append_to(records, more.records);
+    append_to(segments, more.segments);
+    append_to(motions, more.motions);
+    append_to(impacts, more.impacts);
+    append_to(loads, more.loads);
+}
+
+void MoveOutcome::add(const MoveOutcome& next) {
+    const MoveOutcome before = std::exchange(*this, next);
+    bounces += before.bounces;
+    touches += before.touches;
+    unsimulated_time += before.unsimulated_time;
+    stayed += before.stayed;
+    squeezed = std::max(squeezed, before.squeezed);
+    trials += before.trials;
+}
+
 std::optional<ResponseKind> response_from_name(std::string_view name) {
-    for (const auto& [kind, known] : kNames) {
-        if (known == name) return kind;
-    }
-    return std::nullopt;
+    const auto found = std::ranges::find(kNames, name);
+    if (found == kNames.end()) return std::nullopt;
+    return kKinds[static_cast<std::size_t>(found - kNames.begin())];
 }
 
 std::string_view name_of(ResponseKind kind) {
-    const auto found =
-        std::find_if(kNames.begin(), kNames.end(), [&](const auto& entry) { return entry.first == kind; });
-    return found == kNames.end() ? std::string_view() : found->second;
+    const auto k = static_cast<std::size_t>(kind);
+    return k < kNames.size() ? kNames[k] : std::string_view();
 }
 
 std::span<const ResponseKind> response_kinds() { return kKinds; }
@@ -135,7 +156,7 @@ void Response::add_weight(const MovingParticle& /*particle*/, double /*duration*
                           std::vector<SurfaceHit>& /*hits*/) const {}
 
 void Response::first_sides(const Vec3& /*position*/, std::span<SideMemory> sides) const {
-    std::fill(sides.begin(), sides.end(), SideMemory{});
+    std::ranges::fill(sides, SideMemory{});
 }
 
 void Response::inherit_sides(const ChildStart& /*start*/, std::span<SideMemory> /*sides*/) const {}

@@ -21,6 +21,7 @@
 #include "ricochet/dynamics/flight.h"
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/forces.h"
+#include "ricochet/response/contact_motion.h"
 #include "ricochet/response/contact_record.h"
 #include "ricochet/response/material.h"
 #include "ricochet/response/settings.h"
@@ -46,24 +47,31 @@ struct ColliderLoad {
     Vec3 particle_center;      ///< m, position of the particle's centre in the world
     Vec3 couple;               ///< N m s, given in addition to the moment of the impulse at `particle_center`
     double work = 0.0;         ///< J, done on the collider
-    double lost_energy = 0.0;  ///< J, kinetic energy that the particle has lost by the impact; set in the last load of
-                               ///< an impact
+    double lost_energy = 0.0;  ///< J, lost kinetic energy of the particle; set in the last load of an impact
     double approach = 0.0;     ///< m/s, approach speed of the impact; 0 for a slow impact, which begins contact
     bool impact = true;        ///< false: lasting contact
-    bool is_hit = true;        ///< false: resumes a contact that a body's jump has interrupted; ColliderTotals::hits
-                               ///< omits it
+    bool is_hit = true;        ///< false: resumes a contact that a body's jump has interrupted; no hit
 };
 
-/// Scratch memory of one thread. Lists grow in the order of events, and the caller clears them.
-struct MoveScratch {
-    ContactScratch contacts;
+/// Records that moves produce, in the order of events.
+struct MoveLists {
     std::vector<SurfaceHit> hits;
     std::vector<ContactRecord> records;   ///< filled if record_contacts
     std::vector<Segment> segments;        ///< filled if record_segments
-    std::vector<FlownPiece> flown;        ///< filled if record_flown, by the exact response
     std::vector<MotionPart> motions;      ///< filled if record_motions, by the exact response
     std::vector<ColliderLoad> loads;      ///< filled if record_loads
     std::vector<RecordedImpact> impacts;  ///< impacts with a rebound; filled if record_motions, by the exact response
+
+    void clear();
+    /// Moves the records out of other lists, which are empty afterwards.
+    void take(MoveLists& others);
+    void append(const MoveLists& more);
+};
+
+/// Scratch memory of one thread. The caller clears the lists.
+struct MoveScratch : MoveLists {
+    ContactScratch contacts;
+    std::vector<FlownPiece> flown;        ///< filled if record_flown, by the exact response
     std::vector<SurfaceId> supported_by;  ///< surfaces of the contact interval that has just ended, for `impacts`
     bool record_contacts = false;
     bool record_segments = false;
@@ -77,16 +85,14 @@ struct MoveScratch {
 struct ContactState {
     std::array<SurfaceId, 3> surfaces{};  ///< 0 beyond count
     std::uint8_t count = 0;               ///< 0: the particle flies
-    double cascade_left = 0.0;            ///< s, remaining time of a bounce cascade that the end of the step has
-                                          ///< interrupted
+    double cascade_left = 0.0;            ///< s, remaining time of a bounce cascade that the step's end has interrupted
 
-    /// Value of `cascade_left` for a particle that was placed in contact with these surfaces, and perhaps with more.
-    /// Local: a mark, not a distance.
+    [[nodiscard]] std::span<const SurfaceId> all() const { return {surfaces.data(), count}; }
+    /// Local: a mark in `cascade_left` of a particle that was placed in contact with these surfaces, and perhaps more.
     static constexpr double kPlaced = -1.0;
     [[nodiscard]] bool is_placed() const { return cascade_left == kPlaced; }
 
-    /// Returns the state of a particle in flight that a velocity jump of a body has released. `speed`: separation speed
-    /// from the body, in m/s.
+    /// Returns the state in flight of a particle that a body's velocity jump has released with a speed, in m/s.
     [[nodiscard]] static ContactState release_at(double speed) { return {{}, 0, kLetGo - speed}; }
     [[nodiscard]] std::optional<double> release_speed() const {
         if (count > 0 || !(cascade_left <= kLetGo)) return std::nullopt;
@@ -116,8 +122,7 @@ struct MovingParticle {
     std::uint32_t draws = 0;           ///< random numbers drawn so far by this particle's impacts
     ContactState contact{};            ///< contact that continues in the next step
     std::span<SideMemory> sides = {};  ///< one per collider, for responses that keep sides; updated in place
-    /// Impulse, in N s, that shatters the particle. An impact that changes the particle's momentum by at least this
-    /// much removes the particle, like absorption.
+    /// Impulse, in N s, that shatters the particle. An impact with at least this impulse removes the particle.
     double shatter_impulse = std::numeric_limits<double>::infinity();
     /// Flight of the whole step, if particles act on each other and are stepped together. Null: the particle's own
     /// integrator computes it. It must outlive the move.
@@ -132,17 +137,22 @@ struct MovingParticle {
     double step_end = 0.0;  ///< s, time at which the next move begins
     /// Impacts in earlier substeps of the time step. All substeps share one budget.
     std::uint32_t bounces_before = 0;
-    /// Position and spin at rest on a body, in the body's frame, if the particle is attached to it. Set only together
-    /// with a contact state.
+    /// Position and spin at rest on a body, in its frame, if the particle is attached. Set only with a contact state.
     struct Attachment {
         Vec3 position;  ///< m
         Vec3 spin;      ///< rad/s, relative to the body
     };
     std::optional<Attachment> attachment = std::nullopt;
 
-    /// Time after the end of the move, in s, for which flights are planned. Flights are cut at the end of the move, but
-    /// their paths equal the paths of a longer move.
+    /// Time after the end of the move, in s, for which flights are planned. They are then cut at the end of the move.
     double beyond = 0.0;
+
+    [[nodiscard]] Motion motion() const { return {state.velocity, spin}; }
+    [[nodiscard]] RecordedMotion recorded_motion() const { return {state.position, state.velocity, spin}; }
+    void set_motion(const Motion& motion) {
+        state.velocity = motion.velocity;
+        spin = motion.spin;
+    }
 };
 
 /// State of a particle at the end of a step.
@@ -162,14 +172,15 @@ struct MoveOutcome {
     [[nodiscard]] bool is_absorbed() const { return end == MoveEnd::absorbed || end == MoveEnd::shattered; }
     /// Returns the number of contacts found so far, with or without an impact.
     [[nodiscard]] std::uint32_t meetings() const { return bounces + touches; }
+    /// Adds the outcome of a further move of the same particle.
+    void add(const MoveOutcome& next);
 
     MoveEnd end = MoveEnd::moving;
     std::uint32_t bounces = 0;      ///< number of impacts
     std::uint32_t touches = 0;      ///< number of contacts without an approach; only the budget counts them
     double unsimulated_time = 0.0;  ///< s, omitted because a budget is exhausted
     bool is_coarse = false;         ///< true if an adaptive method could not keep its tolerance
-    std::uint32_t stayed = 0;       ///< number of impacts after which no certified position nearer to the surface was
-                                    ///< found
+    std::uint32_t stayed = 0;       ///< number of impacts without a certified position nearer to the surface
     std::uint32_t squeezed = 0;     ///< 1: it was stalled between closing surfaces
     std::uint32_t trials = 0;       ///< number of states tested for collision or penetration
     double depth = 0.0;             ///< m, largest depth behind a surface before a correction
@@ -200,8 +211,7 @@ struct ChildStart {
     Vec3 parent_start;     ///< m, at the start of the parent's move
     Vec3 position;         ///< m
     double radius = 0.0;   ///< m
-    bool goes_on = false;  ///< true for a fragment, which is already in contact with the surfaces that it touches;
-                           ///< false: contact begins
+    bool goes_on = false;  ///< true for a fragment, which is already in contact with the surfaces that it touches
 };
 
 /// Rules of a run for a response. World, bodies, forces and materials must outlive the object.
@@ -249,8 +259,7 @@ public:
     [[nodiscard]] virtual bool keeps_sides() const { return false; }
     /// Sets the sides of all colliders for a new particle. sides.size() == number of colliders.
     virtual void first_sides(const Vec3& position, std::span<SideMemory> sides) const;
-    /// Sets the sides for a particle that another one spawns. sides: on input the parent's sides at the start of its
-    /// move.
+    /// Sets the sides of a spawned particle. sides: on input those of the parent at the start of its move.
     virtual void inherit_sides(const ChildStart& start, std::span<SideMemory> sides) const;
 
     /// Returns the particle's acceleration under this response, in its present contact, if forces accelerate it by

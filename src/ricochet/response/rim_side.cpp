@@ -9,9 +9,8 @@
 namespace ricochet {
 namespace {
 
-/// Error bound of the distance of a point from the line of an edge in double arithmetic, relative to the largest
-/// coordinate involved. Reason: 12 roundings of 3.5 times that coordinate are 2^-47.6 of it. Local: an error bound of
-/// this arithmetic.
+/// Error bound of the distance of a point from the line of an edge, relative to the largest coordinate. Reason: 12
+/// roundings of 3.5 times that coordinate are 2^-47.6 of it. Local: of this arithmetic.
 constexpr double kRimError = 0x1p-44;
 
 /// Relative errors of the projection of a point onto a plane. kHeightError is that of the signed distance, per unit of
@@ -20,9 +19,8 @@ constexpr double kRimError = 0x1p-44;
 constexpr double kHeightError = 0x1p-49;
 constexpr double kFootError = 0x1p-50;
 
-/// Returns a bound of the distance, in m, between the plane and the computed projection of p. The projection is p minus
-/// its signed distance times the normal. The signed distance loses digits on slender triangles, and the coordinates
-/// lose digits if p is far away.
+/// Returns a bound of the distance, in m, between the plane and the computed projection of p. The signed distance loses
+/// digits on slender triangles, and the coordinates lose digits if p is far away.
 double foot_error(const TrianglePlane& plane, const Vec3& p, double largest) {
     const double height = std::fabs(dot(p - plane.a(), plane.unit_normal()));
     const double slenderness = max_abs(plane.cross().magnitude) / max_abs(plane.cross().value);

@@ -59,8 +59,7 @@ private:
         return p.is_out || p.outcome.is_frozen() || p.outcome.is_absorbed();
     }
 
-    /// Returns the time, in s, at which the particle continues. After a collision, the particle may be ahead of the
-    /// system by the time tolerance.
+    /// Returns the time, in s, at which the particle continues. It may be ahead of the system by the time tolerance.
     [[nodiscard]] static double begin_of(const SystemParticle& p, double now) {
         return std::max({now, p.start, p.particle.state.time});
     }
@@ -79,8 +78,7 @@ private:
     }
 
     /// Moves a particle with the system to `next`, and resolves its collisions until then. A shorter step may be
-    /// blocked, or its contact interval may end, although the longer step was free. The particle then moves in several
-    /// pieces.
+    /// blocked or end early although the longer step was free. The particle then moves in pieces.
     void go(SystemParticle& p, const Event& event, double now, double next, MoveScratch& scratch) const {
         const double end = std::min(next, p.stop);
         // A due event is repeated exactly as in its trial, even if it takes less time than the clock can resolve.

@@ -28,7 +28,6 @@
 
 #include "ricochet/collision/obstacles.h"
 #include "ricochet/response/contact_manifold.h"
-#include "ricochet/response/contact_motion.h"
 #include "ricochet/response/impact_resolver.h"
 #include "ricochet/response/response.h"
 
@@ -52,18 +51,16 @@ struct SystemParticle {
     MoveOutcome outcome = {};
     std::vector<Segment> segments = {};  ///< filled if the scratch memory records segments
     Vec3 surface_impulse{};              ///< N s, given to the particle by surfaces
-    bool is_out = false;                 ///< no longer moves in this step: its budget is exhausted, or it rests in a
-                                         ///< pit
+    bool is_out = false;                 ///< no longer moves in this step: without budget, or at rest in a pit
     int idle = 0;                        ///< number of consecutive pieces of contact without progress
 };
 
 /// Moves a system by the global variant, as the course notes describe it for the state vector of the whole system. If
-/// any particle collides within the step, all particles go back to the earliest contact. The contacts at that time are
-/// resolved, and the whole system takes the rest of the step as a new step. The step lasts from `from` to `to`, in s. A
-/// particle whose bounce budget is spent no longer moves in the step; the rest of its time counts as unsimulated.
+/// any particle collides within the step, all particles go back to the earliest contact. The whole system then takes
+/// the rest of the step as a new step. The step lasts from `from` to `to`, in s. A particle whose bounce budget is
+/// spent no longer moves; the rest of its time is unsimulated.
 ///
-/// blocks: scratch memory, one element per block of `block_size` particles. Each element is used by one thread at a
-/// time.
+/// blocks: scratch memory, one element per block of `block_size` particles, each used by one thread at a time.
 void move_together(const ResponseRules& rules, std::span<SystemParticle> particles, double from, double to,
                    std::span<MoveScratch> blocks, std::size_t block_size);
 
@@ -80,8 +77,7 @@ struct CollisionBracket {
 /// a kick may have moved a resting particle to its surface.
 [[nodiscard]] TouchRule rollback_touch(const ResponseRules& rules, const ForceInput& state, double force_velocity);
 
-/// Moves one particle as described at the top of this file. It moves in pieces, each of which is a flight or a contact
-/// interval.
+/// Moves one particle in pieces, each of which is a flight or a contact interval.
 class RollbackMover {
 public:
     /// Kind of a trial over a shorter time: a point of the same flight, or a separate step.

@@ -11,8 +11,8 @@
 namespace ricochet {
 namespace {
 
-/// Returns the time, in s, for which an interval stays over its face. On a curved surface it is the time in which the
-/// normal turns by a small angle.
+/// Returns the time, in s, for which an interval stays over its face. On a curved surface, the normal turns by a small
+/// angle.
 double time_on(const ContactSurface& support, const ContactInterval& interval, const CollisionWorld& world,
                const ForceInput& state) {
     const Vec3& v = interval.motion.velocity;
@@ -66,8 +66,7 @@ RollbackMover::RollbackMover(const ResponseRules& rules, MovingParticle& particl
     particle.contact = {};
 }
 
-/// Takes a step over all the remaining time, goes back to the first contact and resolves it. Repeats this until no time
-/// is left.
+/// Takes a step, goes back to the first contact and resolves it, until no time is left.
 void RollbackMover::run(double duration) {
     double remaining = duration;
     int idle = 0;
@@ -92,8 +91,7 @@ void RollbackMover::run(double duration) {
     keep_contact();
 }
 
-/// Rests for a duration, in s. Used for a particle that circles into a pit, because it would need infinitely many, ever
-/// shorter intervals.
+/// Rests for a duration, in s: a particle that circles into a pit would need infinitely many intervals.
 void RollbackMover::rest(double duration) {
     pull_ = is_kicked() ? Vec3{} : rules_.forces.acceleration(state_);
     manifold_.load(pull_);
@@ -188,23 +186,20 @@ void RollbackMover::follow_interval(double elapsed) {
     const Motion motion = rests ? interval_->motion
                                 : motion_after(*interval_, elapsed, is_over, flight_.path.velocity(elapsed),
                                                state_.radius, manifold_.supports(impact_.surfaces()).all());
-    state_.velocity = motion.velocity;
-    particle_.spin = motion.spin;
+    particle_.set_motion(motion);
     manifold_.record_impulse(state_.velocity - before - elapsed * pull_, elapsed, impact_.ledger());
     outcome_.end = rests ? MoveEnd::resting : MoveEnd::moving;
     kick_velocity_ = Vec3{};
     if (turns_) turn_along();
 }
 
-/// Resolves the collision. The particle bounces, or stays in contact if all rebounds are slow and it is pressed onto a
-/// surface.
+/// Resolves the collision: the particle bounces, or lands if will_stay().
 void RollbackMover::resolve() {
     ++outcome_.bounces;
     outcome_.end = MoveEnd::moving;
     Obstacles(rules_.world, from_, state_.radius).gather(blocked_position_, state_.position, state_.velocity, hit_);
-    const bool on_surface = std::any_of(hit_.begin(), hit_.end(), [&](const ContactSurface& hit) {
-        return rules_.world.point_on(hit.surface, state_.position);
-    });
+    const bool on_surface = std::ranges::any_of(
+        hit_, [&](const ContactSurface& hit) { return rules_.world.point_on(hit.surface, state_.position); });
     if (on_surface) {
         leave_surface();
         return;
@@ -225,12 +220,10 @@ void RollbackMover::leave_surface() {
     if (!step_off_surface(found.near, state_, scratch_)) ++outcome_.stayed;
 }
 
-/// Returns true if all surfaces can hold the particle, all rebounds are slower than the resting speed, and it is
-/// pressed onto a surface.
+/// Returns true if all surfaces can hold the particle, all rebounds are slow, and it is pressed onto a surface.
 bool RollbackMover::will_stay() const {
     const Vec3 a = is_kicked() ? flown_->acceleration : rules_.forces.acceleration(state_);
-    // The surfaces already in contact cancel the acceleration into them. The rest may press the particle onto the next
-    // surface.
+    // The surfaces already in contact cancel the acceleration into them.
     const Vec3 pull = project_off(a, manifold_.normals());
     bool pressed = false;
     for (const ContactSurface& hit : hit_) {
@@ -253,8 +246,7 @@ TouchRule RollbackMover::touch_rule() const {
     return rollback_touch(rules_, state_, force_velocity);
 }
 
-/// Plans a contact interval on the touched surfaces. Plans none if nothing presses the particle onto them, or if the
-/// surface ends here.
+/// Plans a contact interval on the touched surfaces, if they press and do not end here.
 void RollbackMover::plan_contact(double duration) {
     const bool kicked = is_kicked();
     pull_ = kicked ? Vec3{} : rules_.forces.acceleration(state_);
@@ -264,14 +256,13 @@ void RollbackMover::plan_contact(double duration) {
         return;
     }
     const FrictionLimits grip = manifold_.grip(kicked ? 0.0 : 1.0, duration);
-    interval_ = plan_interval({state_.velocity, particle_.spin}, state_.radius, pull_,
-                              manifold_.supports(impact_.surfaces()).all(), grip, duration);
+    interval_ = plan_interval(particle_.motion(), state_.radius, pull_, manifold_.supports(impact_.surfaces()).all(),
+                              grip, duration);
     manifold_.load(*interval_);
     limit_interval();
 }
 
-/// Ends an interval at the end of its face. Discards an interval that is too short to advance the clock, because it
-/// would be planned again forever.
+/// Ends an interval at the end of its face. Discards one that does not advance the clock and would repeat forever.
 void RollbackMover::limit_interval() {
     const ContactSurface support = manifold_[0];
     const double duration =

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the library: tables of materials and of response settings, see core/setting.h.
+/// Tables of materials and of response settings, see core/setting.h.
 #pragma once
 
 #include "ricochet/core/setting.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/carried_particle.h"
@@ -13,15 +12,14 @@
 namespace ricochet {
 namespace {
 
-/// Corrections of the end of an interval. Each squares the relative error. Local: it ends below the rounding of the
-/// result.
+/// Corrections of the end of an interval. Each squares the relative error. Local: it ends below rounding.
 constexpr int kCorrections = 3;
 
 }  // namespace
 
 bool SharedContact::is_slow(const Contact& contact, const Motion& arriving) const {
     const SurfaceKinematics& kinematics = step_.impact().surfaces();
-    return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
+    return std::ranges::all_of(contact.all(), [&](const ContactSurface& surface) {
         const Material& material = kinematics.material_of(surface.surface);
         const double approach = kinematics.surface_normal_speed(surface) - dot(arriving.velocity, surface.normal);
         if (surface.is_support || !(approach > 0.0)) return true;
@@ -33,23 +31,22 @@ bool SharedContact::is_slow(const Contact& contact, const Motion& arriving) cons
 bool SharedContact::land() {
     const SurfaceKinematics& kinematics = step_.impact().surfaces();
     const double before = fastest();
-    const bool has_landed = std::all_of(
-        surfaces_.all().begin(), surfaces_.all().end(),
-        [&](const SharedSurface& touched) { return surfaces_.separation_speed(touched) >= -kStopRounding * before; });
+    const bool has_landed = std::ranges::all_of(surfaces_.all(), [&](const SharedSurface& touched) {
+        return surfaces_.separation_speed(touched) >= -kStopRounding * before;
+    });
     if (has_landed) return true;
     std::array<ImpactSurface, kMostSupports> landing;
     for (std::size_t k = 0; k < surfaces_.size(); ++k) landing[k] = kinematics.landing_on(surfaces_[k].surface);
     const ImpactResult result =
-        solve_impact({state().velocity, particle().spin}, state().radius, std::span(landing).first(surfaces_.size()));
-    state().velocity = result.after.velocity;
-    particle().spin = result.after.spin;
+        solve_impact(particle().motion(), state().radius, std::span(landing).first(surfaces_.size()));
+    particle().set_motion(result.after);
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
         if (result.velocity_change[k] != Vec3{}) {
             ledger().record_impulse(surfaces_[k].surface.surface, result.velocity_change[k], false);
         }
     }
     const double scale = before + length(state().velocity);
-    return std::all_of(surfaces_.all().begin(), surfaces_.all().end(), [&](const SharedSurface& touched) {
+    return std::ranges::all_of(surfaces_.all(), [&](const SharedSurface& touched) {
         return kinematics.separation_speed(touched.surface) >= -kSlowSlip * scale;
     });
 }
@@ -62,8 +59,7 @@ double SharedContact::fastest() const {
     return length(state().velocity) + carried;
 }
 
-/// Plans an interval without the slow departures that bounces have left on surfaces that press. Surfaces that do not
-/// press are dropped.
+/// Plans an interval without the slow departures that bounces have left. Drops surfaces that do not press.
 SharedContact::SupportKind SharedContact::settle(double duration) {
     const Vec3 leaving = state().velocity;
     for (;;) {
@@ -80,10 +76,10 @@ SharedContact::SupportKind SharedContact::settle(double duration) {
         const auto is_kept = [&](std::size_t k) { return interval_.reaction[k] != Vec3{} || !(departures[k] < 0.0); };
         for (std::size_t k = 0; k < surfaces_.size(); ++k) left += is_kept(k) ? 1 : 0;
         if (left == before || left == 0 || kind != SupportKind::shared) {
-            // The surfaces of one frame answer a departure by themselves.
-            if (kind != SupportKind::shared) state().velocity = leaving;
             if (kind == SupportKind::shared) {
                 ledger().record_impulse(surfaces_[0].surface.surface, state().velocity - leaving, false);
+            } else {  // the surfaces of one frame resolve a departure by themselves
+                state().velocity = leaving;
             }
             return kind;
         }
@@ -92,20 +88,7 @@ SharedContact::SupportKind SharedContact::settle(double duration) {
     }
 }
 
-/// Marks surfaces on which the particle slips no faster than `most`, in m/s, as sticking. Such a slip is rounding of an
-/// impact that has stopped it. If friction just suffices to hold the particle, nothing else would end that slip, whose
-/// direction turns at once.
-StuckSurfaces SharedContact::sticking(const Motion& motion, std::span<const SupportSurface> surfaces,
-                                      double most) const {
-    StuckSurfaces stuck{};
-    for (std::size_t k = 0; k < surfaces.size(); ++k) {
-        stuck[k].to_slip = surfaces[k].friction > 0.0 && length(slip_on(surfaces[k], motion, state().radius)) <= most;
-    }
-    return stuck;
-}
-
-/// Plans the next interval in the frame in which no surface advances. Drops the surfaces of other frames if those of
-/// one frame alone support the particle.
+/// Plans the next interval in the frame in which no surface advances. If one frame supports alone, drops the others.
 SharedContact::SupportKind SharedContact::plan(double duration) {
     const std::size_t count = surfaces_.size();
     ShortestShift shift;
@@ -120,8 +103,11 @@ SharedContact::SupportKind SharedContact::plan(double duration) {
     const double reach = kTouchingOffsets * contact_offset(state().position);
     const FrictionLimits grip{1.0, step_.duration() / kShortestIntervals, reach};
     const Motion motion{state().velocity - shift_, particle().spin};
+    // A slower slip is rounding of an impact that has stopped it. If friction just suffices to hold the particle,
+    // nothing else would end that slip, whose direction turns at once.
+    const double slow = kNegligibleSpeed * duration * length(forces);
     interval_ = plan_interval(motion, state().radius, forces, all, grip, duration,
-                              sticking(motion, all, kNegligibleSpeed * duration * length(forces)));
+                              sticking_surfaces(motion, state().radius, all, slow));
     std::optional<BodyId> holder;
     bool is_shared = false;
     for (std::size_t k = 0; k < count; ++k) {
@@ -135,8 +121,7 @@ SharedContact::SupportKind SharedContact::plan(double duration) {
     return SupportKind::single;
 }
 
-/// Returns a position at a time, moved to the contact offset from the surfaces that press on the particle, and out of
-/// the others.
+/// Returns a position at a time, moved to the contact offset from pressing surfaces, and out of the others.
 Vec3 SharedContact::kept_off(Vec3 end, double time) const {
     for (int pass = 0; pass < kCorrections; ++pass) {
         ShortestShift shift;
@@ -152,10 +137,9 @@ Vec3 SharedContact::kept_off(Vec3 end, double time) const {
 }
 
 /// Moves the particle to the contact offset if it has come so near to a surface that rounding would decide its side. A
-/// path is certified not to touch the surfaces that it follows, but it may end nearer to them than positions are
-/// rounded.
+/// certified path may end nearer to the surfaces that it follows than positions are rounded.
 void SharedContact::lift() {
-    const bool is_low = std::any_of(surfaces_.all().begin(), surfaces_.all().end(), [&](const SharedSurface& touched) {
+    const bool is_low = std::ranges::any_of(surfaces_.all(), [&](const SharedSurface& touched) {
         const SharedSurfaces::Height height = surfaces_.height_above(touched, state().position, state().time);
         return height.above - state().radius < 0.25 * height.offset;
     });
@@ -163,8 +147,8 @@ void SharedContact::lift() {
 }
 
 /// Lifts the middle of a path by 4 s (1 - s) of a height, over its duration. By the cubic's error, a point's path can
-/// lie behind surfaces that turn, where it would be stopped. The lift turns with the surfaces, and is the same for all:
-/// a lift off one surface alone would lead into another.
+/// lie behind surfaces that turn. The lift turns with the surfaces, and is the same for all: a lift off one alone would
+/// lead into another.
 void SharedContact::lift_middle(Path& path) const {
     ShortestShift at_start;
     ShortestShift at_end;
@@ -232,8 +216,7 @@ double SharedContact::until_rim(const Path& path) const {
     return most;
 }
 
-/// Returns the change of velocity, m/s, by a surface in an interval. About an edge, half of it has the edge's direction
-/// at the end of the interval.
+/// Returns the change of velocity, m/s, by a surface in an interval. About an edge, half of it has its last direction.
 Vec3 SharedContact::velocity_change_of(std::size_t k, double elapsed, bool has_arrived) const {
     const SharedSurface& touched = surfaces_[k];
     const Vec3 reaction = elapsed * interval_.reaction[k];
@@ -262,8 +245,7 @@ SharedContact::Followed SharedContact::follow_interval(double most) {
     const double shortest = std::min(before, step_.duration() / kShortestIntervals);
     Followed followed{interval_.duration > 0.0 ? interval_.duration : std::min(shortest, most)};
     const Path path = path_until_rim(followed.duration);
-    // A path ends on the surfaces, but between its ends it lies beside surfaces that turn. Up to a contact it is
-    // planned anew.
+    // Between its ends a path lies beside surfaces that turn, so it is planned anew up to a contact.
     RefinementBudget budget;
     const auto refine = [&](double time, const Path& tried) -> std::optional<Path> {
         if (!(time > 0.0)) return {};

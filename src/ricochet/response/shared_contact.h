@@ -1,10 +1,8 @@
 /// \file
-/// Private to the exact response: lasting contact with surfaces of different frames, such as the floor and a blade that
-/// pushes along it, and with deforming meshes.
+/// Lasting contact with surfaces of different frames, such as a floor and a blade on it, and with deforming meshes.
 #pragma once
 
 #include <optional>
-#include <span>
 
 #include "ricochet/response/contact_interval.h"
 #include "ricochet/response/particle_step.h"
@@ -12,20 +10,18 @@
 
 namespace ricochet {
 
-/// Follows one particle on the surfaces of several frames in one step. The particle is in the world. In each contact
-/// interval the surfaces count as planes with a velocity, whose normals turn at a known rate. The interval is planned
-/// in a frame in which no plane advances along its normal.
+/// Follows one particle on the surfaces of several frames in one step. In each contact interval the surfaces count as
+/// planes with a velocity, whose normals turn at a known rate. It is planned in a frame in which no plane advances
+/// along its normal.
 class SharedContact {
 public:
     /// The step must outlive it.
     explicit SharedContact(ParticleStep& step) : step_(step), surfaces_(step) {}
 
-    /// Returns true if an impact is slow on all surfaces that it approaches, so that contact begins or continues.
-    /// arriving: the motion before it.
+    /// Returns true if an impact is slow on all surfaces, so that contact begins. arriving: the motion before it.
     [[nodiscard]] bool is_slow(const Contact& contact, const Motion& arriving) const;
     /// Lands on all surfaces that touch the particle, and follows them. Returns the next contact, if there is one.
-    /// Else, if time is left, no surface supports the particle any longer, or those of one frame do
-    /// (MovingParticle::contact).
+    /// Otherwise, if time is left, surfaces of at most one frame support the particle (MovingParticle::contact).
     std::optional<Contact> follow();
 
 private:
@@ -40,8 +36,6 @@ private:
     [[nodiscard]] double fastest() const;
     [[nodiscard]] SupportKind settle(double duration);
     [[nodiscard]] SupportKind plan(double duration);
-    [[nodiscard]] StuckSurfaces sticking(const Motion& motion, std::span<const SupportSurface> surfaces,
-                                         double most) const;
     [[nodiscard]] Followed follow_interval(double most);
     [[nodiscard]] Path interval_path(double duration) const;
     [[nodiscard]] Path path_until_rim(double& duration) const;

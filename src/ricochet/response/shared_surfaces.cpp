@@ -1,7 +1,6 @@
 #include "ricochet/response/shared_surfaces.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <limits>
 
@@ -82,7 +81,7 @@ SharedSurface& SharedSurfaces::add(const ContactSurface& surface) {
 }
 
 bool SharedSurfaces::is_any_deforming() const {
-    return std::any_of(all().begin(), all().end(), [&](const SharedSurface& touched) { return deforms(touched); });
+    return std::ranges::any_of(all(), [&](const SharedSurface& touched) { return deforms(touched); });
 }
 
 SupportSurface SharedSurfaces::constraint(const SharedSurface& touched, const Vec3& shift) const {
@@ -184,15 +183,15 @@ std::vector<SurfaceId> SharedSurfaces::supporting(const Path& path) const {
             return world.nearest(other, local_position).distance >= step_.state().radius;
         });
     }
-    std::sort(list.begin(), list.end());
+    std::ranges::sort(list);
     return list;
 }
 
 /// Returns true for one of the surfaces, and for a surface of the same body that continues the plane of one.
 bool SharedSurfaces::continues_one(const ContactSurface& surface) const {
-    return std::any_of(all().begin(), all().end(), [&](const SharedSurface& touched) {
+    return std::ranges::any_of(all(), [&](const SharedSurface& touched) {
         if (touched.surface.surface == surface.surface) return true;
-        if (std::find(touched.others.begin(), touched.others.end(), surface.surface) != touched.others.end()) {
+        if (std::ranges::find(touched.others, surface.surface) != touched.others.end()) {
             return true;
         }
         return bodies().body_of(surface.surface) == touched.body &&
@@ -201,18 +200,10 @@ bool SharedSurfaces::continues_one(const ContactSurface& surface) const {
 }
 
 void SharedSurfaces::join_impact(Contact& contact) const {
-    for (ContactSurface& surface : std::span(contact.surfaces).first(static_cast<std::size_t>(contact.count))) {
+    for (ContactSurface& surface : surfaces_of(contact)) {
         surface.is_support = surface.is_support || continues_one(surface);
     }
-    for (const SharedSurface& touched : all()) {
-        const bool is_there = std::any_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& other) {
-            return other.surface == touched.surface.surface;
-        });
-        if (is_there || contact.count == Contact::kMostSurfaces) continue;
-        ContactSurface& added = contact.surfaces[static_cast<std::size_t>(contact.count++)];
-        added = touched.surface;
-        added.is_support = true;
-    }
+    for (const SharedSurface& touched : all()) add_support(contact, touched.surface);
 }
 
 ContactState SharedSurfaces::contact_state() const {

@@ -1,6 +1,5 @@
 /// \file
-/// Private to the exact response: the surfaces of several frames, and of deforming meshes, that touch a particle at one
-/// time.
+/// The surfaces of several frames, and of deforming meshes, that touch a particle at one time.
 #pragma once
 
 #include <array>
@@ -20,8 +19,7 @@ struct SharedSurface {
     BodyId body = kWorldBody;
     Vec3 velocity;  ///< m/s, of the surface and its material at the contact
     Vec3 turning;   ///< rad/s, angular velocity of the body
-    /// Other surfaces at the same contact. For a deforming mesh, see DeformedContact::all. At the rim of a triangle,
-    /// these are the triangles with the same rim.
+    /// Other surfaces at the same contact: DeformedContact::all, or triangles with the same rim.
     std::vector<SurfaceId> others;
 };
 
@@ -68,8 +66,7 @@ public:
     };
     [[nodiscard]] Height height_above(const SharedSurface& touched, const Vec3& position, double time) const;
 
-    /// Returns a time, in s, in which no surface rotates much, and no normal below the particle turns much because of
-    /// curvature.
+    /// Returns a time, in s, in which no surface rotates much, and no curved surface's normal turns much.
     [[nodiscard]] double longest_interval() const;
     /// Returns the time, in s, of the next velocity jump of a touched body within the step, if there is one.
     [[nodiscard]] std::optional<double> next_jump() const;

@@ -6,14 +6,13 @@
 namespace ricochet {
 namespace {
 
-/// Relative margin for the rounding of distances. Local: it is far larger than needed, and the computed distances
-/// decide.
+/// Relative margin for the rounding of distances. Local: far larger than needed.
 constexpr double kDistanceRounding = 1e-9;
 
 }  // namespace
 
 void set_first_sides(const SignedDistance& distance, const Vec3& position, std::span<SideMemory> sides) {
-    std::fill(sides.begin(), sides.end(), SideMemory{});
+    std::ranges::fill(sides, SideMemory{});
     std::vector<SurfacePoint> on;
     distance.near(position, 0.0, on);
     for (const SurfacePoint& point : on) sides[point.collider].side = 1;
@@ -94,8 +93,7 @@ double SideWatch::deepest() const {
 }
 
 bool SideWatch::in_contact() const {
-    return std::any_of(sides_.begin(), sides_.end(),
-                       [](const SideMemory& memory) { return memory.touching || memory.penetrating; });
+    return std::ranges::any_of(sides_, [](const SideMemory& memory) { return memory.touching || memory.penetrating; });
 }
 
 }  // namespace ricochet

@@ -1,6 +1,5 @@
 /// \file
-/// Private to the responses that test a particle at the end of a step: whether it is behind a surface, how deep, and
-/// the shortest path out.
+/// Tests of a particle at the end of a step: whether it is behind a surface, how deep, and the shortest path out.
 #pragma once
 
 #include <span>
@@ -39,8 +38,7 @@ void settle_child_sides(const SignedDistance& distance, const ChildStart& start,
 
 /// Keeps the sides of one particle. A particle gets behind a surface if its path crosses the collider an odd number of
 /// times. After an even number of crossings, it may have passed through an edge, or through the whole collider. It is
-/// then behind if its side differs from the one at the start. A particle stays behind until it is found on its own side
-/// again.
+/// then behind if its side differs from the one at the start. It stays behind until it is found on its own side again.
 class SideWatch {
 public:
     SideWatch(const SignedDistance& distance, std::span<SideMemory> sides, double radius, SideScratch& lists)
@@ -69,6 +67,23 @@ private:
     std::vector<SurfacePoint>& points_;
     Vec3 clear_center_;
     double clear_radius_ = 0.0;  // m, radius without any surface around clear_center_
+};
+
+/// Base of the responses that keep sides.
+class SidedResponse : public Response {
+public:
+    explicit SidedResponse(const ResponseRules& rules) : Response(rules), distance_(rules.world) {}
+
+    [[nodiscard]] bool keeps_sides() const override { return true; }
+    void first_sides(const Vec3& position, std::span<SideMemory> sides) const override {
+        set_first_sides(distance_, position, sides);
+    }
+    void inherit_sides(const ChildStart& start, std::span<SideMemory> sides) const override {
+        settle_child_sides(distance_, start, sides);
+    }
+
+protected:
+    SignedDistance distance_;  // NOLINT(misc-non-private-member-variables-in-classes)
 };
 
 }  // namespace ricochet

@@ -23,16 +23,12 @@ bool are_independent(const CoulombContact& contact, const CoulombResistance& sli
            are_independent(second, first, dot(first, first));
 }
 
-void add_multiple_of(MotionVector& sum, double factor, const MotionVector& direction) {
-    for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += factor * direction[c];
-}
-
 MotionVector change_by(const SingleContactForces& forces, const CoulombContact& contact,
                        const CoulombResistance* slip) {
     MotionVector sum{};
-    add_multiple_of(sum, forces.normal, contact.direction);
+    add_multiple(sum, forces.normal, contact.direction);
     for (std::size_t d = 0; slip != nullptr && d < 2; ++d) {
-        add_multiple_of(sum, forces.tangential[d], slip->direction[d]);
+        add_multiple(sum, forces.tangential[d], slip->direction[d]);
     }
     return sum;
 }
@@ -93,7 +89,7 @@ Motion along_single_surface(const Motion& motion, double radius, const Vec3& n, 
     MotionVector all = motion_vector(motion.velocity, (radius / kTurning) * motion.spin);
     const double before = std::max(std::sqrt(dot(all, all)), braked_from);
     // Projects twice, because the first projection leaves the rounding of the part that it removes.
-    for (int pass = 0; pass < 2; ++pass) add_multiple_of(all, left_along - dot(all, direction), direction);
+    for (int pass = 0; pass < 2; ++pass) add_multiple(all, left_along - dot(all, direction), direction);
     if (std::sqrt(dot(all, all)) <= kStopRounding * before) return {};
     return {velocity_of(all), radius > 0.0 ? (kTurning / radius) * turning_of(all) : Vec3{}};
 }

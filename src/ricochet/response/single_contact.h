@@ -1,6 +1,6 @@
 /// \file
-/// Private to the responses: closed forms of contact with a single surface. Their results are bitwise equal to the
-/// results of the general methods (CoulombProblem, along_surfaces()), which take many times longer.
+/// Closed forms of contact with a single surface. They equal the general methods bit by bit (CoulombProblem,
+/// along_surfaces()), which take many times longer.
 #pragma once
 
 #include <array>

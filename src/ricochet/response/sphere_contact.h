@@ -1,6 +1,5 @@
 /// \file
-/// Private to the responses: directions and resistances of a solid sphere, or a point, on a surface in a
-/// CoulombProblem.
+/// Directions and resistances of a solid sphere, or a point, on a surface in a CoulombProblem.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +9,7 @@
 
 namespace ricochet {
 
-/// sqrt(5/2): the ratio of radius times angular velocity to the rotational part of a MotionVector. A mathematical
-/// constant.
+/// sqrt(5/2): radius times angular velocity over the rotational part of a MotionVector. A mathematical constant.
 inline constexpr double kTurning = 1.5811388300841898;
 
 /// Returns a MotionVector. turning: sqrt(2/5) times the radius times the angular velocity.

@@ -15,8 +15,8 @@ SupportedAcceleration acceleration_on(const ResponseRules& rules, const MovingPa
     if (manifold.empty()) return {pull};
     const SurfaceKinematics surfaces(rules, particle, ReferenceFrame::world());
     const FrictionLimits grip = manifold.grip(1.0, rules.settings.time_step);
-    const ContactInterval interval = plan_interval({particle.state.velocity, particle.spin}, particle.state.radius,
-                                                   pull, manifold.supports(surfaces).all(), grip, 0.0);
+    const ContactInterval interval =
+        plan_interval(particle.motion(), particle.state.radius, pull, manifold.supports(surfaces).all(), grip, 0.0);
     SupportedAcceleration held{interval.acceleration, interval.spin_acceleration};
     held.count = static_cast<std::uint8_t>(manifold.size());
     for (std::size_t k = 0; k < manifold.size(); ++k) {

@@ -1,11 +1,10 @@
 /// \file
-/// Private to the responses: the acceleration of a particle in lasting contact, including the reactions of surfaces.
+/// The acceleration of a particle in lasting contact, including the reactions of surfaces.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "ricochet/collision/contact_scratch.h"
 #include "ricochet/response/contact_manifold.h"
 #include "ricochet/response/response.h"
 

@@ -6,6 +6,13 @@
 
 namespace ricochet {
 
+void add_support(Contact& impact, ContactSurface surface) {
+    const auto is_it = [&](const ContactSurface& known) { return known.surface == surface.surface; };
+    if (impact.count == Contact::kMostSurfaces || std::ranges::any_of(impact.all(), is_it)) return;
+    surface.is_support = true;
+    impact.surfaces[static_cast<std::size_t>(impact.count++)] = surface;
+}
+
 double SurfaceKinematics::approach(std::span<const ContactSurface> surfaces) const {
     double largest = 0.0;
     for (const ContactSurface& surface : surfaces) largest = std::max(largest, -separation_speed(surface));
@@ -30,8 +37,7 @@ ImpactSurface SurfaceKinematics::landing_on(const ContactSurface& surface) const
             surface_normal_speed(surface)};
 }
 
-/// Returns the velocity of a body's point at the contact, plus the velocity of the surface material relative to the
-/// body.
+/// Returns the velocity of a body's point at the contact, plus that of the material relative to the body.
 Vec3 SurfaceKinematics::carried_velocity_of(const ContactSurface& surface, const Vec3& center) const {
     const BodyId body = rules_.bodies.body_of(surface.surface);
     const SurfacesInTime now(rules_.bodies, reference_.body(), particle_.state.time);
@@ -95,7 +101,7 @@ double SurfaceKinematics::approach_of_paths(std::span<const ContactSurface> surf
 }
 
 bool SurfaceKinematics::approaches_pushed_body(std::span<const ContactSurface> surfaces) const {
-    return !given_.empty() && std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& surface) {
+    return !given_.empty() && std::ranges::any_of(surfaces, [&](const ContactSurface& surface) {
         if (!is_dynamic(surface.surface)) return false;
         const Vec3 point = particle_.state.position - particle_.state.radius * surface.normal;
         const Vec3 given = velocity_beside_path(rules_.bodies.body_of(surface.surface), point);

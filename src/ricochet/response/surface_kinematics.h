@@ -1,7 +1,9 @@
 /// \file
-/// Private to the responses: how the surfaces near a particle move, and how the particle moves relative to them.
+/// How the surfaces near a particle move, and how the particle moves relative to them.
 #pragma once
 
+#include <algorithm>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -12,9 +14,21 @@
 
 namespace ricochet {
 
+[[nodiscard]] inline std::span<ContactSurface> surfaces_of(Contact& contact) {
+    return std::span(contact.surfaces).first(static_cast<std::size_t>(contact.count));
+}
+/// Returns the part of a contact with the surfaces for which is_kept(surface) is true.
+template <class IsKept>
+[[nodiscard]] Contact part_of(Contact contact, const IsKept& is_kept) {
+    const auto all = surfaces_of(contact);
+    contact.count = static_cast<int>(std::remove_if(all.begin(), all.end(), std::not_fn(is_kept)) - all.begin());
+    return contact;
+}
+/// Adds a surface that supports the particle to an impact. Does nothing if the impact contains it or is full.
+void add_support(Contact& impact, ContactSurface surface);
+
 /// Velocities of surfaces at a particle, in the particle's reference frame. A surface of the scene at rest moves only
-/// if its material does. Velocities are in m/s. Normal speeds are positive along the normal, which points towards the
-/// particle.
+/// if its material does. Velocities are in m/s, and normal speeds positive towards the particle.
 ///
 /// A dynamic body keeps its planned path until the move ends. Impulses from this particle change its velocity for this
 /// particle at once. The difference from the planned motion is called the motion beside the path.
@@ -35,8 +49,7 @@ public:
         return rules_.bodies.is_dynamic(rules_.bodies.body_of(surface));
     }
 
-    /// Returns the velocity of the surface's material at the contact. If the surface does not grip, this is the
-    /// velocity of its body. See SurfaceMotion.
+    /// Returns the velocity of the surface's material at the contact, or of its body if it does not grip.
     [[nodiscard]] Vec3 velocity_of(const ContactSurface& surface) const {
         return velocity_of(surface, particle_.state.position);
     }
@@ -79,8 +92,7 @@ public:
     void note_given(BodyId body, const Wrench& wrench) { given_.push_back({body, wrench}); }
     /// Returns the normal speed of a dynamic body's surface relative to its planned path; 0 for other surfaces.
     [[nodiscard]] double advance_beside_path(const ContactSurface& surface) const;
-    /// Returns the speed of approach to a dynamic body's surface if the body continues on its planned path; 0 for other
-    /// surfaces.
+    /// Returns the approach speed if a dynamic body continues on its planned path; 0 for other surfaces.
     [[nodiscard]] double approach_of_path(const ContactSurface& surface) const;
     /// Returns the largest approach_of_path() of the surfaces, >= 0.
     [[nodiscard]] double approach_of_paths(std::span<const ContactSurface> surfaces) const;

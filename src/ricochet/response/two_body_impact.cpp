@@ -7,42 +7,19 @@
 namespace ricochet {
 namespace {
 
-/// Number of halvings in the bisection for the friction that adds no energy; 53 find it to the last bit. Local, because
-/// the bisection ends below the rounding of its result.
+/// Number of halvings in the bisection for the friction that adds no energy; 53 find it to the last bit. Local: it ends
+/// below rounding.
 constexpr int kHalvings = 53;
-
-/// Response of both sides at the contact: of the particle to an impulse, in N s, and of the body to its opposite.
-class Contact {
-public:
-    Contact(const ForceInput& state, const DynamicSurface& surface)
-        : state_(state), surface_(surface), where_(state.position - state.radius * surface.normal) {}
-
-    /// Returns the change of the relative velocity by an impulse, in m/s.
-    [[nodiscard]] Vec3 change(const Vec3& impulse) const {
-        const Vec3 of_particle = impulse / state_.mass;
-        Vec3 along;
-        if (state_.radius > 0.0) along = 2.5 * (of_particle - dot(of_particle, surface_.normal) * surface_.normal);
-        return of_particle + along + surface_.body.change_at(where_, impulse);
-    }
-    /// Returns the impulse that causes a change of the relative velocity, in N s.
-    [[nodiscard]] Vec3 impulse_for(const Vec3& wanted) const {
-        const Vec3 x = change({1, 0, 0});
-        const Vec3 y = change({0, 1, 0});
-        const Vec3 z = change({0, 0, 1});
-        return SymmetricMatrix{x.x, y.y, z.z, y.x, z.x, z.y}.inverse() * wanted;
-    }
-
-private:
-    const ForceInput& state_;
-    const DynamicSurface& surface_;
-    Vec3 where_;
-};
 
 /// One impact on a body. Its result is the impulse on the particle.
 class Impact {
 public:
     Impact(const Motion& before, const ForceInput& state, const DynamicSurface& surface)
-        : contact_(state, surface), normal_(surface.normal), friction_(surface.friction) {
+        : state_(state),
+          body_(surface.body),
+          point_(state.position - state.radius * surface.normal),
+          normal_(surface.normal),
+          friction_(surface.friction) {
         const Vec3 relative = before.velocity - surface.velocity;
         approach_ = -dot(relative, normal_);
         wanted_ = (1.0 + surface.restitution) * approach_;
@@ -60,22 +37,37 @@ public:
     /// impulses.
     [[nodiscard]] Vec3 impulse() const {
         if (friction_ == 0.0) return impulse_with({}, {});
-        const Vec3 stop = contact_.impulse_for(wanted_ * normal_ - slip_);
+        const Vec3 stop = impulse_for(wanted_ * normal_ - slip_);
         if (is_in_cone(stop) && !gains(stop)) return stop;
         const double speed = length(slip_);
         if (!(speed > 0.0)) return impulse_after({}, stop);
         const Vec3 against = (-1.0 / speed) * slip_;
         const Vec3 sliding = impulse_with({}, friction_ * against);
-        const bool turns_slip = dot(slip_ + contact_.change(sliding), against) > 0.0;
+        const bool turns_slip = dot(slip_ + change(sliding), against) > 0.0;
         if (!turns_slip && dot(sliding, normal_) > 0.0 && !gains(sliding)) return sliding;
         if (!turns_slip) return most_of({}, against, friction_, [](const Vec3& /*impulse*/) { return true; });
         const Vec3 direction = normal_ + friction_ * against;
-        return impulse_after((speed / dot(against, contact_.change(direction))) * direction, stop);
+        return impulse_after((speed / dot(against, change(direction))) * direction, stop);
     }
 
 private:
-    /// Returns the whole impulse, in N s. Its part `given` has already stopped the initial slip. stop: the whole
-    /// impulse that leaves no slip.
+    /// Returns the change of the relative velocity, in m/s, by an impulse on the particle and its opposite on the body.
+    [[nodiscard]] Vec3 change(const Vec3& impulse) const {
+        const Vec3 of_particle = impulse / state_.mass;
+        Vec3 along;
+        if (state_.radius > 0.0) along = 2.5 * (of_particle - dot(of_particle, normal_) * normal_);
+        return of_particle + along + body_.change_at(point_, impulse);
+    }
+    /// Returns the impulse that causes a change of the relative velocity, in N s.
+    [[nodiscard]] Vec3 impulse_for(const Vec3& wanted) const {
+        const Vec3 x = change({1, 0, 0});
+        const Vec3 y = change({0, 1, 0});
+        const Vec3 z = change({0, 0, 1});
+        return SymmetricMatrix{x.x, y.y, z.z, y.x, z.x, z.y}.inverse() * wanted;
+    }
+
+    /// Returns the whole impulse, in N s. Its part `given` has stopped the initial slip. stop: the impulse that leaves
+    /// no slip.
     [[nodiscard]] Vec3 impulse_after(const Vec3& given, const Vec3& stop) const {
         if (is_in_cone(stop - given)) {
             if (!gains(stop)) return stop;
@@ -85,13 +77,13 @@ private:
             return most_of(given, supports, 1.0, [](const Vec3& /*impulse*/) { return true; });
         }
         const Vec3 smooth = impulse_with(given, {});
-        const Vec3 left = slip_ + contact_.change(smooth);
+        const Vec3 left = slip_ + change(smooth);
         const Vec3 along = left - dot(left, normal_) * normal_;
         const double speed = length(along);
         if (!(speed > 0.0)) return smooth;
         const Vec3 against = (-1.0 / speed) * along;
         return most_of(given, against, friction_, [&](const Vec3& impulse) {
-            return dot(slip_ + contact_.change(impulse), against) <= 0.0;  // it does not reverse the slip
+            return dot(slip_ + change(impulse), against) <= 0.0;  // it does not reverse the slip
         });
     }
 
@@ -100,12 +92,11 @@ private:
         return pressing > 0.0 && length(impulse - pressing * normal_) <= friction_ * pressing;
     }
 
-    /// Returns the impulse, in N s, that reverses the approach. It consists of `given` and a remainder in the direction
-    /// of the normal plus `friction`.
+    /// Returns the impulse, in N s, that reverses the approach: `given` plus a multiple of the normal plus `friction`.
     [[nodiscard]] Vec3 impulse_with(const Vec3& given, const Vec3& friction) const {
         const Vec3 direction = normal_ + friction;
-        const double left = wanted_ - dot(normal_, contact_.change(given));
-        return given + (left / dot(normal_, contact_.change(direction))) * direction;
+        const double left = wanted_ - dot(normal_, change(given));
+        return given + (left / dot(normal_, change(direction))) * direction;
     }
 
     /// Returns the impulse with the largest friction in the direction `along` that adds no energy and is allowed.
@@ -123,11 +114,13 @@ private:
     /// Returns true if an impulse adds kinetic energy beyond rounding. The exact energy change is zero if slip stops
     /// without losses.
     [[nodiscard]] bool gains(const Vec3& by) const {
-        const double taken = 0.5 * dot(by, contact_.change(by));
+        const double taken = 0.5 * dot(by, change(by));
         return dot(by, slip_ - approach_ * normal_) + taken > kEnergyRounding * taken;
     }
 
-    Contact contact_;
+    const ForceInput& state_;
+    const Mobility& body_;
+    Vec3 point_;  // m, of the contact
     Vec3 normal_;
     double friction_;
     double approach_ = 0.0;  // m/s

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: an impact on a dynamic body.
+/// An impact on a dynamic body.
 #pragma once
 
 #include "ricochet/core/mobility.h"

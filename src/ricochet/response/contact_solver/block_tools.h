@@ -1,5 +1,5 @@
 /// \file
-/// Private to the direct contact solver: sums and products of 3 x 3 blocks.
+/// Sums and products of 3 x 3 blocks.
 #pragma once
 
 #include <cstddef>

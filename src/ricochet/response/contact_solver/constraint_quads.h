@@ -1,6 +1,5 @@
 /// \file
-/// Private to the iterative contact solver: the functions of contact_constraints.h for four rows or four bodies at
-/// once.
+/// The functions of contact_constraints.h for four rows or four bodies at once.
 #pragma once
 
 #include <array>
@@ -27,13 +26,11 @@ struct QuadState {
     QuadVec3 turning_change;
 };
 
-/// Four ConstraintImpulse.
 struct QuadImpulse {
     Quad normal;
     QuadVec3 tangential;
 };
 
-/// Four ContactConstraint.
 struct QuadConstraint {
     QuadVec3 normal;
     Quad bound;
@@ -91,8 +88,7 @@ template <class T>
     return states;
 }
 
-/// Adds the changes to the states of bodies that are not fixed. Fixed bodies are not written to, because several
-/// threads can use them.
+/// Adds the changes to the states of bodies. Fixed bodies are not written to, because several threads can use them.
 RICOCHET_INLINE void store_changes(const QuadState& states, const FourOf<SolverState>& to) {
     const Quad none{};
     const QuadVec3& v = states.velocity_change;

@@ -29,7 +29,6 @@ RICOCHET_INLINE void relax_one(const SweptRows& swept, double factor, ContactCon
 /// Number of rows per search for rows that are not idle. Reason: these rows and their bodies stay in the L1 cache.
 constexpr std::size_t kLookAhead = 64;
 
-/// Four rows and the bodies of each.
 struct QuadBodies {
     FourOf<ContactConstraint> rows;
     FourOf<SolverState> a, b;

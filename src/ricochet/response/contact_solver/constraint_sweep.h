@@ -1,5 +1,5 @@
 /// \file
-/// Private to the iterative contact solver: one sweep over rows, with the fastest instructions of the processor.
+/// One sweep over rows, with the fastest instructions of the processor.
 #pragma once
 
 #include <span>
@@ -28,8 +28,7 @@ enum class SweepVariant {
 /// Solves each row that is not idle, after a momentum step of `factor` times its last change.
 [[nodiscard]] SweepChange sweep_rows(const SweptRows& swept, double factor, SweepVariant variant);
 
-/// Applies the momentum step to bodies: `factor` times their change since `last`. Afterwards `last` contains their
-/// states before this step.
+/// Applies the momentum step to bodies: `factor` times their change since `last`, which then gets their states before.
 void go_on(std::span<SolverState> states, std::span<SolverState> last, double factor, SweepVariant variant);
 
 }  // namespace ricochet

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: an order of contacts in which several threads can solve them.
+/// An order of contacts in which several threads can solve them.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,8 @@
 namespace ricochet {
 
 /// Graph colouring of contacts. No two contacts of a colour share a body, so they can be solved in any order with the
-/// same result. Each contact in turn gets the first colour that is free at both bodies, so colours depend only on the
-/// order of the contacts. A body can have more contacts than there are colours. Its remaining contacts form a last
-/// group, which one thread solves in order.
+/// same result. Each contact in turn gets the first colour that is free at both bodies. If a body has more contacts
+/// than there are colours, the others form a last group, which one thread solves in order.
 class ContactColoring {
 public:
     static constexpr std::uint32_t kMostColors = 64;

@@ -1,6 +1,6 @@
 /// \file
-/// Private to the contact solvers: one contact constraint ("row"), solved while all others keep their impulses. The
-/// templates also process four rows at once (constraint_quads.h), with bit-identical results.
+/// One contact constraint ("row"), solved while all others keep their impulses. The templates also process four rows at
+/// once (constraint_quads.h), with bit-identical results.
 ///
 /// Lever arms are parallel to normals. A contact's normal impulse therefore changes only its approach speed, and its
 /// friction only its slip. Both impulses have closed forms. Spins are stored as surface speeds: radius times spin.
@@ -60,12 +60,6 @@ struct RollingConstraint {
     Vec3 direction;        ///< change of `moment` in the last sweep, including its momentum step
 };
 
-/// Velocities, in m/s, by which contact conditions may be violated.
-struct SolverLimits {
-    double approach = 0.0;
-    double slip = 0.0;  ///< also for rolling
-};
-
 /// Change of one row, or of each of four rows, in a sweep. See SweepChange.
 template <class Number>
 struct RowChange {
@@ -93,8 +87,9 @@ struct SweepChange {
         slip_squared = std::max(slip_squared, row.slip_squared);
     }
     [[nodiscard]] double worst() const { return std::sqrt(std::max(approach_squared, slip_squared)); }
-    [[nodiscard]] bool is_within(const SolverLimits& limits) const {
-        return std::sqrt(approach_squared) <= limits.approach && std::sqrt(slip_squared) <= limits.slip;
+    /// Returns true if all changes are within a tolerance, in m/s. slip: replaces a smaller one for slip and rolling.
+    [[nodiscard]] bool is_within(double tolerance, double slip) const {
+        return std::sqrt(approach_squared) <= tolerance && std::sqrt(slip_squared) <= std::max(tolerance, slip);
     }
 };
 
@@ -190,8 +185,7 @@ RICOCHET_INLINE auto relax(Row& row, double factor, State& a, State& b) {
     return change;
 }
 
-/// Relaxes the rolling resistance of a row like relax() of the row. Its velocity change is measured at the surface of
-/// the smaller sphere.
+/// Relaxes the rolling resistance of a row. Its velocity change is measured at the surface of the smaller sphere.
 inline void relax(const ContactConstraint& row, RollingConstraint& rolling, double factor, SolverState& a,
                   SolverState& b, SweepChange& change) {
     const Vec3 step = factor * rolling.direction;

@@ -12,8 +12,8 @@ namespace {
 
 /// Returns the largest speed, in m/s, at which an overlap, in m, may be separated. The part from forces is at most the
 /// speed of a free fall through the overlap, because sinking in released no more energy. The approach speed is added.
-/// Without this limit, a small overlap would eject heavy spheres, and shorter steps would eject them faster. `pull` is
-/// in m/s^2, `approach` in m/s.
+/// Without this limit, a small overlap would eject heavy spheres, faster in shorter steps. `pull` is in m/s^2,
+/// `approach` in m/s.
 double most_parting(double pull, double radius, double overlap, double approach) {
     if (!(overlap > 0.0)) return std::max(0.0, approach);
     const double fall = std::min(kPartingFall * kPartingFall * radius, 2.0 * overlap);
@@ -31,7 +31,7 @@ constexpr std::size_t kPrefetchDistance = 8;
 constexpr double kOutOfReach = 1.0 + 1e-9;
 
 /// Fraction of the search distance that counts as clear if no wall was found within that distance. The rest covers
-/// rounding errors. Local, because only the cost depends on it.
+/// rounding errors. Local: it affects only the cost.
 constexpr double kClear = 0.9;
 
 }  // namespace
@@ -42,9 +42,7 @@ SolverReport ContactIsland::plan(std::span<const ContactIslandMember> members, s
     contacts_.clear();
     keys_.clear();
     before_.clear();
-    ends_.clear();
     edges_of_sleep_.clear();
-    surfaces_.clear();
     first_wall_.clear();
     clear_.clear();
     add_bodies(members, memory);
@@ -121,7 +119,6 @@ void ContactIsland::add_pair(std::uint32_t first, std::uint32_t second) {
     if (a.is_asleep || b.is_asleep) gap = std::max(0.0, gap);
     if (gap > a.reach + b.reach) return;
     SolverContact& contact = contacts_.emplace_back();
-    ends_.push_back({first, second});
     contact.a = first;
     contact.b = second;
     contact.gap = gap;
@@ -138,7 +135,6 @@ void ContactIsland::add_pair(std::uint32_t first, std::uint32_t second) {
 
 void ContactIsland::add_walls(std::span<const ContactIslandMember> members, MoveScratch& scratch) {
     const SurfaceGeometry geometry(rules_.world, scratch.contacts.plane_cache);
-    surfaces_.resize(contacts_.size());
     for (std::uint32_t i = 0; i < members.size(); ++i) {
         first_wall_.push_back(contacts_.size());
         clear_.push_back(0.0);
@@ -170,7 +166,6 @@ void ContactIsland::add_wall(std::uint32_t index, const ContactIslandMember& mem
     contact.restitution = rebound(material.restitution_at(approach), approach);
     contact.most_parting = most_parting(members_[index].pull, member.radius, -contact.gap, approach);
     add_key(ContactKey::of_wall(member.moving->id, wall.surface));
-    surfaces_.push_back(wall.surface);
 }
 
 /// Adds the surface velocity of the wall's material, and sets the wall's angular velocity.
@@ -196,9 +191,8 @@ void ContactIsland::add_key(const ContactKey& key) {
     warm_start(keys_.size() - 1);
 }
 
-/// Prefetches and copies start impulses, which are scattered in memory, in three stages. For contact `at` it prefetches
-/// the keys. For the contact kPrefetchDistance earlier it finds the impulse and prefetches it. For the contact twice as
-/// far back it copies the impulse.
+/// Looks up start impulses, which are scattered in memory, in three stages: prefetches the keys of contact `at`, finds
+/// and prefetches the impulse of the contact kPrefetchDistance earlier, copies that of the one twice as far back.
 void ContactIsland::warm_start(std::size_t at) {
     const std::size_t count = keys_.size();
     if (at < count) __builtin_prefetch(memories_[contacts_[at].a].others.data());
@@ -251,8 +245,7 @@ ContactIsland::Pace ContactIsland::pace_of(std::span<const ContactIslandMember> 
     return pace;
 }
 
-/// Sets stricter tolerances for contacts of slow spheres, because the errors of a fast sphere would keep its neighbours
-/// awake.
+/// Sets stricter tolerances for slow spheres, because the errors of a fast sphere would keep its neighbours awake.
 void ContactIsland::set_exactness(const Pace& pace, double enough) {
     const double still = kNetworkStill * pace.smallest / duration_;
     const auto speed_of = [&](const MemberState& member) {
@@ -289,7 +282,8 @@ std::vector<WallImpulse> ContactIsland::impulses_of(std::size_t index) const {
         if (impulse.normal == 0.0) continue;
         const Vec3& normal = contacts_[i].normal;
         const Vec3 turn = impulse.moment - cross(body.radius * normal, impulse.tangential);
-        impulses.push_back({surfaces_[i], body.inverse_mass * (impulse.normal * normal + impulse.tangential),
+        impulses.push_back({static_cast<SurfaceId>(keys_[i].surface()),
+                            body.inverse_mass * (impulse.normal * normal + impulse.tangential),
                             body.inverse_inertia * turn});
     }
     return impulses;
@@ -320,9 +314,10 @@ std::vector<WarmStartMemory::Entry> ContactIsland::entries() const {
 
 std::vector<NeighbourPair> ContactIsland::pressing() const {
     std::vector<NeighbourPair> pressing;
-    pressing.reserve(ends_.size());
-    for (std::size_t i = 0; i < ends_.size(); ++i) {
-        if (solver_.impulses()[i].normal > 0.0) pressing.push_back(ends_[i]);
+    const std::size_t pairs = first_wall_.front();  // pairs of spheres come before all walls
+    pressing.reserve(pairs);
+    for (std::size_t i = 0; i < pairs; ++i) {
+        if (solver_.impulses()[i].normal > 0.0) pressing.push_back({contacts_[i].a, contacts_[i].b});
     }
     return pressing;
 }

@@ -1,12 +1,10 @@
 /// \file
-/// Private to the responses: a contact island. One contact problem determines the motion of all its spheres over a
-/// step.
+/// A contact island. One contact problem determines the motion of all its spheres over a step.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "ricochet/dynamics/neighbour_grid.h"
@@ -42,8 +40,8 @@ struct SleeperImpulse {
 };
 
 /// Solves and moves one contact island after the other, and reuses its memory. The forces first give each sphere its
-/// velocity at the end of the step (symplectic Euler). Then all contacts with spheres and walls are found and solved.
-/// Each sphere finally moves along its plan.
+/// velocity at the end of the step (symplectic Euler). Then all contacts are found and solved, and each sphere moves
+/// along its plan.
 class ContactIsland {
 public:
     /// Both arguments must outlive the object.
@@ -51,8 +49,8 @@ public:
 
     /// Returns the search distance for the first plan, in m: more than the length of the member's free path.
     [[nodiscard]] double first_reach(const ContactIslandMember& member) const;
-    /// Plans a step of `duration` seconds. `pairs` contains the indices of members within reach of each other, and
-    /// `memory` the contacts of the last step.
+    /// Plans a step of `duration` seconds. pairs: members within reach of each other. memory: contacts of the last
+    /// step.
     SolverReport plan(std::span<const ContactIslandMember> members, std::span<const NeighbourPair> pairs,
                       double duration, const WarmStartMemory& memory, MoveScratch& scratch);
     /// Moves the member with this index as planned. Several threads may move different members.
@@ -127,10 +125,8 @@ private:
     std::vector<ContactKey> keys_;                       // one per contact
     std::vector<const SolverImpulse*> before_;           // last impulse of each contact, or null
     std::vector<std::size_t> edges_of_sleep_;            // contacts of a sleeping sphere with one that is awake
-    std::vector<NeighbourPair> ends_;                    // members of each contact between spheres
     std::vector<WallContact> walls_;                     // scratch memory of add_walls()
     std::vector<std::size_t> first_wall_;  // index of each member's first contact with a wall, and the end
-    std::vector<SurfaceId> surfaces_;      // one per contact, set for walls
     std::vector<double> clear_;            // distance of each member in which there is certainly no wall, in m
     IterativeContactSolver solver_;
 };

@@ -1,6 +1,5 @@
 /// \file
-/// Private to the responses: the rigid contact problem of many solid spheres over one time step. The spheres touch each
-/// other and walls.
+/// The rigid contact problem of many solid spheres over one time step. The spheres touch each other and walls.
 ///
 /// The spheres would have the velocities v at the end of the step without contact. The unknown contact impulses P
 /// change them to v + sum(P / m). Each contact has a gap g at the start of the step, a normal n, and these conditions:
@@ -35,8 +34,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <span>
-#include <vector>
 
 #include "ricochet/core/vec3.h"
 
@@ -44,8 +41,7 @@ namespace ricochet {
 
 /// A solid sphere, or a point (radius 0, which does not spin).
 struct SolverBody {
-    Vec3 velocity;                 ///< in m/s, at the end of the step; without contact impulses before solving, with
-                                   ///< them after
+    Vec3 velocity;                 ///< in m/s, at the end of the step; solving adds the contact impulses
     Vec3 spin;                     ///< in rad/s, likewise
     double inverse_mass = 1.0;     ///< in 1/kg; 0 for a fixed body
     double inverse_inertia = 0.0;  ///< in 1/(kg m^2)
@@ -80,16 +76,14 @@ struct SolverContact {
     SolverImpulse start;             ///< start value: its impulse in the last step
 };
 
-/// Conditions that end the solver. It ends if all contacts are within `tolerance`. After `sweeps` sweeps it also ends
-/// if they are within `enough`, and after `most_sweeps` in any case. The tolerances are velocities, in m/s, by which
-/// contact conditions may be violated.
+/// Conditions that end the solver: all contacts are within `tolerance`, or within `enough` after `sweeps` sweeps, or
+/// `most_sweeps` are made. Tolerances are velocities, in m/s, by which contact conditions may be violated.
 struct SolverSettings {
     double duration = 1.0;     ///< duration of the step, in s
     double tolerance = 1e-12;  ///< the solver ends after any sweep that meets it
     double enough = 0.0;       ///< the solver ends after `sweeps` sweeps if this is met
     double slip = 0.0;         ///< replaces smaller tolerances for slip and rolling, because they cause no overlap
-    double connecting =
-        0.0;  ///< replaces a smaller `tolerance` in the first solution, which only finds connected impacts
+    double connecting = 0.0;   ///< replaces a smaller `tolerance` while only connected impacts are found
     int sweeps = 10000;
     int most_sweeps = 10000;
 };

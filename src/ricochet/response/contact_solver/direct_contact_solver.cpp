@@ -11,9 +11,8 @@ namespace {
 
 constexpr std::uint32_t kFixed = std::numeric_limits<std::uint32_t>::max();
 
-/// Stiffness of the dampers, relative to the heaviest mass. Reason: each pass reduces the violation to a hundredth. For
-/// spheres of a billionth of that mass, rounding causes errors of 1e-5 of the speeds. A smaller stiffness needs more
-/// passes. Local, because SolverSettings has the tolerance.
+/// Stiffness of the dampers, relative to the heaviest mass: each pass reduces the violation to a hundredth. For spheres
+/// of a billionth of that mass, rounding causes errors of 1e-5 of the speeds. Local: SolverSettings has the tolerance.
 constexpr double kStiffness = 100.0;
 
 /// Factor between successive stiffnesses, which grow from that for the lightest mass to that for the heaviest. The
@@ -22,7 +21,7 @@ constexpr double kStiffer = 100.0;
 constexpr int kFewSteps = 8;
 
 /// Largest number of passes after the first, and of Newton steps in each. Networks that need more have no solution, or
-/// friction makes the iteration cycle.
+/// friction makes them cycle.
 constexpr int kMostPasses = 3;
 constexpr int kMostSteps = 80;
 
@@ -31,8 +30,8 @@ constexpr int kMostSteps = 80;
 constexpr double kDefect = 0.25;
 constexpr double kViolated = 0.5;
 
-/// Largest slope at the end of a line search, relative to the slope at its start, and largest number of trials. Local,
-/// because the residual decides when a solution is accepted.
+/// Largest slope at the end of a line search, relative to the slope at its start, and largest number of trials. Local:
+/// the residual decides.
 constexpr double kSlopeLeft = 0.2;
 constexpr int kMostTrials = 40;
 
@@ -42,7 +41,7 @@ constexpr int kMostTrials = 40;
 constexpr double kMostOperations = 1e9;
 
 /// Stiffness of sliding friction along the slip, relative to its stiffness across the slip. It is above 0 so that no
-/// matrix is singular. Local, because the residual decides when a solution is accepted.
+/// matrix is singular. Local: the residual decides.
 constexpr double kSlipStiffness = 1e-9;
 
 /// Returns the derivative, with respect to `wish`, of the tangential part of `wish` limited to the length `most`.
@@ -87,9 +86,8 @@ bool DirectContactSolver::improve(const SolverSystem& parts, double tolerance) {
     return is_solved;
 }
 
-/// Makes the first pass. It tries the full stiffness first, which succeeds if the start is near the solution, as for
-/// spheres at rest. Otherwise the stiffness grows in stages, because stiff dampers would throw light spheres back and
-/// forth.
+/// Makes the first pass, at full stiffness if the start is near the solution, as for spheres at rest. Otherwise the
+/// stiffness grows in stages, because stiff dampers would throw light spheres back and forth.
 void DirectContactSolver::begin_passes(double most_defect) {
     const double stiffest = kStiffness * heaviest_;
     const std::vector<SolverState> start(parts_.states.begin(), parts_.states.end());
@@ -123,7 +121,6 @@ std::uint32_t DirectContactSolver::pair_of(std::uint32_t first, std::uint32_t se
     return static_cast<std::uint32_t>(pairs_.size() - 1);
 }
 
-/// Finds the matrix blocks of each row.
 void DirectContactSolver::find_block_indices() {
     pairs_.clear();
     block_indices_.clear();
@@ -330,7 +327,7 @@ bool DirectContactSolver::search_along(std::span<const double> direction) {
     go_along(direction, 1.0);
     double slope = slope_along(direction);
     if (slope <= kSlopeLeft * std::fabs(first)) {
-        std::fill(ahead_.begin(), ahead_.end(), 0);
+        std::ranges::fill(ahead_, 0);
         return true;
     }
     for (std::size_t i = 0; i < responses_.size(); ++i) ahead_[i] = responses_[i].normal > 0.0 ? 1 : 0;
@@ -371,8 +368,7 @@ double DirectContactSolver::update_multipliers() {
     return worst;
 }
 
-/// Limits the impulses to the friction cone and computes the velocities from them, so that momentum is conserved to
-/// rounding.
+/// Limits the impulses to the friction cone and computes the velocities, so that momentum is conserved to rounding.
 void DirectContactSolver::compute_velocities() {
     std::copy(parts_.before.begin(), parts_.before.end(), parts_.states.begin());
     for (ContactConstraint& row : parts_.rows) {

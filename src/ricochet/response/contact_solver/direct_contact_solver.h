@@ -1,6 +1,6 @@
 /// \file
-/// Private to the contact solver: the direct contact solver, an augmented Lagrangian Newton method with a
-/// factorization. It solves networks whose masses differ so much that sweeps hardly converge.
+/// The direct contact solver, an augmented Lagrangian Newton method with a factorization. It solves networks whose
+/// masses differ so much that sweeps hardly converge.
 ///
 /// Example: a light sphere transmits the load of a heavy one to a floor. The number of plain sweeps needed is then of
 /// the order of the mass ratio, because each sweep moves only the light sphere. Here all velocities are solved
@@ -28,8 +28,7 @@
 
 namespace ricochet {
 
-/// A network: states without impulses (`before`), and with the impulses of the rows (`states`). The first `bodies`
-/// states are spheres, the others walls.
+/// A network: states without impulses (`before`), and with them (`states`). The first `bodies` are spheres, then walls.
 struct SolverSystem {
     std::span<const SolverState> before;
     std::span<SolverState> states;
@@ -46,8 +45,7 @@ public:
     [[nodiscard]] bool improve(const SolverSystem& parts, double tolerance);
 
 private:
-    /// Indices of the off-diagonal matrix blocks of a row, by the unknowns that they couple: velocities and turnings of
-    /// a and b.
+    /// Indices of a row's off-diagonal matrix blocks, by the velocities and turnings of a and b that they couple.
     struct BlockIndices {
         std::uint32_t velocities, a_turning_a, a_turning_b, b_turning_a, b_turning_b, turnings;
     };

@@ -15,13 +15,8 @@ constexpr std::size_t kBlock = 512;
 
 /// Number of restarts per additional sweep without momentum. After this many restarts, one such sweep follows each
 /// restart, after twice as many two. Reason: friction can make the iteration cycle. Large networks that converge
-/// restart a few dozen times. Local, because the residual decides when the iteration ends.
+/// restart a few dozen times. Local: the residual decides.
 constexpr int kRestartsAPlainSweep = 64;
-
-/// Returns the limits for a tolerance in m/s.
-SolverLimits limits_of(const SolverSettings& settings, double tolerance) {
-    return {tolerance, std::max(tolerance, settings.slip)};
-}
 
 /// Returns the ratio of the heavier to the lighter mass of two bodies, or 1 if one of them is a wall.
 double ratio_of(const SolverState& a, const SolverState& b) {
@@ -83,7 +78,7 @@ void IterativeContactSolver::add_row(const SolverContact& contact, std::span<con
     if (contact.rolling_friction > 0.0) add_rolling(contact, bodies);
     restitutions_.push_back(contact.touched ? 0.0 : contact.restitution);
     mass_ratio_ = std::max(mass_ratio_, ratio_of(before_[row.a], before_[row.b]));
-    add_gain(row, before_, against_start_);
+    add_work(row, row.bound, before_, against_start_);
 }
 
 void IterativeContactSolver::set_row(ContactConstraint& row, const SolverContact& contact,
@@ -145,9 +140,8 @@ void IterativeContactSolver::add_rolling(const SolverContact& contact, std::span
     rolling_.push_back(rolling);
 }
 
-/// Applies all start impulses, or none if their total work is positive, for example after a reversal of forces. Most
-/// contacts keep their impulses from step to step, and sweeps soon correct the others. Applying only a fraction of each
-/// start impulse would disturb all spheres at rest.
+/// Applies all start impulses, or none if their total work is positive, for example after a reversal of forces.
+/// Applying only a fraction of each would disturb all spheres at rest.
 void IterativeContactSolver::apply_start() {
     if (against_start_ > 0.0) {
         for (ContactConstraint& row : rows_) row.impulse = {};
@@ -162,22 +156,22 @@ void IterativeContactSolver::apply_start() {
     }
 }
 
-/// Adds the work of a contact's impulses at the given velocities to a sum, in J.
-void IterativeContactSolver::add_gain(const ContactConstraint& row, std::span<const SolverState> states,
+/// Adds the work of a contact's impulses to a sum, in J. The normal impulse works on the separation speed plus `bound`.
+void IterativeContactSolver::add_work(const ContactConstraint& row, double bound, std::span<const SolverState> states,
                                       double& sum) const {
     if (row.impulse.normal == 0.0) return;
     const SolverState& a = states[row.a];
     const SolverState& b = states[row.b];
-    sum += row.impulse.normal * (separation_speed_of(row, a, b) + row.bound) +
-           dot(row.impulse.tangential, slip_of(row, a, b));
+    sum +=
+        row.impulse.normal * (separation_speed_of(row, a, b) + bound) + dot(row.impulse.tangential, slip_of(row, a, b));
     if (row.rolling == ContactConstraint::kNone) return;
     const RollingConstraint& rolling = rolling_[row.rolling];
     sum += dot(rolling.moment, rolling_of(row, rolling, a, b));
 }
 
 /// Sweeps with Nesterov's momentum, which restarts whenever a sweep changes more than the one before. If masses differ
-/// much and the sweeps do not converge, the direct contact solver is used. Further sweeps then check its result. If the
-/// residual has grown, the state before the direct solver is restored.
+/// much and the sweeps do not converge, the direct contact solver is used. Further sweeps check its result, which is
+/// undone if the residual has grown.
 void IterativeContactSolver::iterate(const SolverSettings& settings, SolverReport& report) {
     const bool are_very_unlike = mass_ratio_ > kVeryUnlikeMasses;
     const int first = are_very_unlike ? std::min(settings.sweeps, settings.most_sweeps) : settings.most_sweeps;
@@ -195,8 +189,7 @@ void IterativeContactSolver::iterate(const SolverSettings& settings, SolverRepor
 
 /// Sweeps until the tolerances of the settings are met. Returns false if `most` sweeps do not meet them.
 bool IterativeContactSolver::sweep_until(const SolverSettings& settings, int most, SolverReport& report) {
-    const SolverLimits wished = limits_of(settings, settings.tolerance);
-    const SolverLimits enough = limits_of(settings, std::max(settings.tolerance, settings.enough));
+    const double enough = std::max(settings.tolerance, settings.enough);
     double before = 0.0;
     double factor = 0.0;
     int momentum = 0;  // sweeps with momentum since its last restart
@@ -206,8 +199,8 @@ bool IterativeContactSolver::sweep_until(const SolverSettings& settings, int mos
         const SweepChange change = sweep(factor);
         ++report.sweeps;
         report.residual = change.worst();
-        report.is_converged = change.is_within(enough);
-        if (change.is_within(k < settings.sweeps ? wished : enough)) return true;
+        report.is_converged = change.is_within(enough, settings.slip);
+        if (change.is_within(k < settings.sweeps ? settings.tolerance : enough, settings.slip)) return true;
         if (k >= most) return false;
         if (before > 0.0 && change.squared > before) {
             plain = ++restarts / kRestartsAPlainSweep;
@@ -225,6 +218,9 @@ bool IterativeContactSolver::sweep_until(const SolverSettings& settings, int mos
 /// Solves every contact once, after a momentum step of contacts and bodies: `factor` times their last change.
 SweepChange IterativeContactSolver::sweep(double factor) {
     go_on(factor);
+    const auto sweep_part = [&](std::size_t begin, std::size_t end, SweepVariant variant) {
+        return sweep_rows({std::span(rows_).subspan(begin, end - begin), rolling_, states_}, factor, variant);
+    };
     SweepChange all;
     for (std::size_t color = 0; color < coloring_.colors(); ++color) {
         const std::size_t first = coloring_.begin_of(color);
@@ -232,20 +228,19 @@ SweepChange IterativeContactSolver::sweep(double factor) {
         const bool is_serial = coloring_.is_serial(color);
         const SweepVariant variant = is_serial ? SweepVariant::one_by_one : sweep_variants().back();
         if (count <= kBlock || is_serial) {
-            all.add(sweep_rows(factor, first, first + count, variant));
+            all.add(sweep_part(first, first + count, variant));
             continue;
         }
         blocks_.assign((count + kBlock - 1) / kBlock, {});
         parallel_for_blocks(count, kBlock, [&](std::size_t k, std::size_t begin, std::size_t end) {
-            blocks_[k] = sweep_rows(factor, first + begin, first + end, variant);
+            blocks_[k] = sweep_part(first + begin, first + end, variant);
         });
         for (const SweepChange& block : blocks_) all.add(block);
     }
     return all;
 }
 
-/// Applies the momentum step to all bodies. Velocities are linear in the impulses, so each row can apply the same step
-/// to its impulse later, when it is solved.
+/// Applies the momentum step to all bodies. Each row applies the same step to its impulse when it is solved.
 void IterativeContactSolver::go_on(double factor) {
     const auto go = [&](std::size_t, std::size_t begin, std::size_t end) {
         const std::size_t count = end - begin;
@@ -257,11 +252,6 @@ void IterativeContactSolver::go_on(double factor) {
     } else {
         parallel_for_blocks(bodies_, kBlock, go);
     }
-}
-
-SweepChange IterativeContactSolver::sweep_rows(double factor, std::size_t begin, std::size_t end,
-                                               SweepVariant variant) {
-    return ricochet::sweep_rows({std::span(rows_).subspan(begin, end - begin), rolling_, states_}, factor, variant);
 }
 
 }  // namespace ricochet

@@ -1,11 +1,10 @@
 /// \file
-/// Private to the responses: the iterative contact solver. See contact_network.h for the problem.
+/// The iterative contact solver. See contact_network.h for the problem.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "ricochet/response/contact_solver/connected_impacts.h"
 #include "ricochet/response/contact_solver/constraint_sweep.h"
 #include "ricochet/response/contact_solver/contact_coloring.h"
 #include "ricochet/response/contact_solver/contact_constraints.h"
@@ -13,6 +12,24 @@
 #include "ricochet/response/contact_solver/direct_contact_solver.h"
 
 namespace ricochet {
+
+/// Sets of bodies that contacts with an impulse join. Each set has one restitution and one energy balance.
+class ConnectedImpacts {
+public:
+    /// Joins the bodies of every row with a normal impulse. states: bodies, then walls. Fixed ones join nothing.
+    void assign(std::span<const SolverState> states, std::span<const ContactConstraint> rows);
+
+    /// Returns the number of a row's impact, which is less than size().
+    [[nodiscard]] std::uint32_t of(const ContactConstraint& row) const {
+        return of_body(fixed_[row.a] != 0 ? row.b : row.a);
+    }
+    [[nodiscard]] std::uint32_t of_body(std::uint32_t body) const { return leaders_[body]; }
+    [[nodiscard]] std::size_t size() const { return leaders_.size(); }
+
+private:
+    std::vector<std::uint32_t> leaders_;
+    std::vector<std::uint8_t> fixed_;
+};
 
 /// Solves contact networks and reuses its memory. All threads solve a large network together. The result is
 /// bit-identical for any number of threads. A different order of the contacts changes it only within the tolerance.
@@ -27,19 +44,17 @@ public:
     [[nodiscard]] std::span<const std::uint8_t> rebounds() const { return rebounds_; }
 
 private:
-    /// Number of contacts between the prefetch of a contact and its use. Contacts of one colour are scattered in
-    /// memory.
+    /// Number of contacts between the prefetch of a contact and its use.
     static constexpr std::size_t kPrefetchDistance = 8;
 
-    /// Energy change of a connected impact. The fraction f of its impulses changes the energy by f (against + f
-    /// curvature / 2), in J.
+    /// Energy change by a fraction f of a connected impact's impulses: f (against + f curvature / 2), in J.
     struct Gain {
         double against = 0.0;
         double curvature = 0.0;
         double size = 0.0;  ///< sum of magnitudes, for the rounding error, in J
 
         [[nodiscard]] bool is_gain() const;
-        /// Returns the largest fraction of the impulses that does not gain energy.
+        /// Returns the largest fraction of the impulses that does not gain energy, at most 1.
         [[nodiscard]] double factor() const;
     };
 
@@ -56,11 +71,10 @@ private:
                  double duration);
     void add_rolling(const SolverContact& contact, std::span<const SolverBody> bodies);
     void apply_start();
-    void add_gain(const ContactConstraint& row, std::span<const SolverState> states, double& sum) const;
+    void add_work(const ContactConstraint& row, double bound, std::span<const SolverState> states, double& sum) const;
     void iterate(const SolverSettings& settings, SolverReport& report);
     bool sweep_until(const SolverSettings& settings, int most, SolverReport& report);
     [[nodiscard]] SweepChange sweep(double factor);
-    [[nodiscard]] SweepChange sweep_rows(double factor, std::size_t begin, std::size_t end, SweepVariant variant);
     void go_on(double factor);
     [[nodiscard]] bool may_rebound() const;
     [[nodiscard]] bool apply_restitution();

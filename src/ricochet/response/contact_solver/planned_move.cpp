@@ -12,15 +12,13 @@
 namespace ricochet {
 namespace {
 
-/// Corrections of the end of a chord. Local, because the segment is certified before use.
+/// Corrections of the end of a chord. Local: the segment is certified.
 constexpr int kCorrections = 3;
 
-/// Corrections of the end of a chord between moving surfaces and others. In a wedge, each correction undoes a part of
-/// the one before. If each pass leaves three quarters of the error, 1e-4 of it remains at the end. Local, because the
-/// segment is certified before use.
+/// Corrections of the end of a chord between moving surfaces and others. If each pass leaves three quarters of the
+/// error, as in a wedge, 1e-4 of it remains. Local: the segment is certified.
 constexpr int kCorrectionsInWedge = 32;
 
-/// The move of one particle.
 class PlannedMove {
 public:
     PlannedMove(const ResponseRules& rules, MovingParticle& particle, const PlannedMotion& plan, MoveScratch& scratch)
@@ -114,8 +112,7 @@ Path PlannedMove::next_line() const {
     return line;
 }
 
-/// Moves along a chord to a position clear of the walls there. Inside a sphere, for example, every line along the
-/// surface leads into it at once.
+/// Moves along a chord to a position clear of the walls. Inside a sphere, a line along the surface leads into it.
 void PlannedMove::cut_across() {
     const ForceInput& state = particle_.state;
     const Vec3 velocity = state.velocity;
@@ -169,8 +166,7 @@ CollisionWorld::Nearest PlannedMove::nearest(SurfaceId surface, const Vec3& p, d
     return SurfacesInTime(rules_.bodies, kWorldBody, time).nearest(surface, {p, 0.0, p});
 }
 
-/// Moves a position off the given surfaces if it is too near to them at a time, in s. Also moves it off walls that it
-/// then touches.
+/// Moves a position off the given surfaces at a time, in s, and off walls that it then touches.
 Vec3 PlannedMove::kept_off(Vec3 end, double time, std::span<const SurfaceId> surfaces) const {
     const double radius = particle_.state.radius;
     bool was_put_off = false;
@@ -190,8 +186,7 @@ Vec3 PlannedMove::kept_off(Vec3 end, double time, std::span<const SurfaceId> sur
     return flush_tiny(end);
 }
 
-/// Returns the surfaces in held_ that a line passes along: it ends clear of them and hardly comes nearer before its
-/// end.
+/// Returns the surfaces in held_ that a line passes along: it ends clear of them and hardly comes nearer before.
 std::vector<SurfaceId> PlannedMove::passed_by(const Path& line) {
     const double radius = particle_.state.radius;
     std::vector<SurfaceId> passed;
@@ -212,21 +207,18 @@ std::vector<SurfaceId> PlannedMove::passed_by(const Path& line) {
     return passed;
 }
 
-/// Moves the particle off surfaces that are too near. A line that a contact ends early may be slightly too near to the
-/// surfaces that it passes along.
+/// Moves the particle off surfaces that are too near, because a line that a contact ends early may be too near.
 void PlannedMove::come_off(const Contact& contact) {
     const ForceInput& state = particle_.state;
     std::vector<SurfaceId> near = held_;
     for (const ContactSurface& surface : contact.all()) near.push_back(surface.surface);
     const double least = state.radius - 0.5 * sphere_tolerance(state.radius, max_abs(state.position));
-    const bool is_off = std::all_of(near.begin(), near.end(), [&](SurfaceId surface) {
-        return nearest(surface, state.position, state.time).distance >= least;
-    });
+    const bool is_off = std::ranges::all_of(
+        near, [&](SurfaceId surface) { return nearest(surface, state.position, state.time).distance >= least; });
     if (!is_off) shift_to(step_, kept_off(state.position, state.time, near));
 }
 
-/// Removes the velocity into the surfaces of a contact, and into earlier ones that are still touched. In a groove the
-/// velocity along it remains, in a corner none.
+/// Removes the velocity into the surfaces of a contact, and into earlier ones that are still touched.
 void PlannedMove::divert(const Contact& contact) {
     std::erase_if(met_, [&](const ContactSurface& surface) { return !touches(surface.surface); });
     for (const ContactSurface& surface : contact.all()) met_.push_back(surface);
@@ -241,8 +233,7 @@ bool PlannedMove::touches(SurfaceId surface) const {
     return distance - state.radius <= kStillTouched * state.radius + 4.0 * contact_offset(state.position);
 }
 
-/// Returns a velocity without its components into the surfaces in met_. If they block every direction, returns the
-/// velocity of one of these surfaces.
+/// Returns a velocity without components into the surfaces in met_. If they block all directions, returns that of one.
 Vec3 PlannedMove::along_those_met(const Vec3& velocity) const {
     ShortestShift shift;
     for (std::size_t k = 0;; ++k) {

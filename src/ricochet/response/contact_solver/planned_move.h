@@ -1,8 +1,7 @@
 /// \file
-/// Private to the responses: moves a particle along the plan of a contact island.
+/// Moves a particle along the plan of a contact island.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "ricochet/response/response.h"
@@ -28,8 +27,8 @@ struct PlannedMotion {
 /// Moves a particle along the straight line of its planned velocity, in certified segments. If a surface blocks the
 /// line, the particle continues along that surface. This is no impact, because the plan contains all impacts, but the
 /// velocity into the surface is lost. Among moving colliders, each line ends clear of the moving surfaces that push or
-/// block the particle, at their positions at the end of the step. The particle's contacts from the last step end. The
-/// motion is recorded as driven, because other particles take part in its energy.
+/// block the particle, as they are at the end of the step. Contacts from the last step end. The motion is recorded as
+/// driven, because other particles take part in its energy.
 [[nodiscard]] MoveOutcome move_as_planned(const ResponseRules& rules, MovingParticle& particle,
                                           const PlannedMotion& plan, MoveScratch& scratch);
 

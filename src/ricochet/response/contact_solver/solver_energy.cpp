@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ricochet/core/disjoint_sets.h"
 #include "ricochet/core/prefetch.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/contact_solver/iterative_contact_solver.h"
@@ -10,8 +11,7 @@ namespace ricochet {
 namespace {
 
 /// Returns the restitution of each connected impact: the smallest of its approaching contacts with an impulse, or 1 if
-/// there are none. A contact without restitution that only supports a body does not count. `all_own` contains the
-/// restitution of each row.
+/// there are none. A contact without restitution that only supports a body does not count. all_own: that of each row.
 std::vector<double> restitutions(const ConnectedImpacts& impacts, std::span<const SolverState> before,
                                  std::span<const ContactConstraint> rows, std::span<const double> all_own) {
     std::vector<double> least(impacts.size(), 1.0);
@@ -32,8 +32,20 @@ std::vector<double> restitutions(const ConnectedImpacts& impacts, std::span<cons
 
 }  // namespace
 
+// The smallest number represents each set, so one pass in ascending order finds all roots.
+void ConnectedImpacts::assign(std::span<const SolverState> states, std::span<const ContactConstraint> rows) {
+    DisjointSets sets(states.size());
+    fixed_.resize(states.size());
+    for (std::size_t i = 0; i < states.size(); ++i) fixed_[i] = states[i].inverse_mass == 0.0 ? 1 : 0;
+    for (const ContactConstraint& row : rows) {
+        if (row.impulse.normal != 0.0 && fixed_[row.a] == 0 && fixed_[row.b] == 0) sets.join(row.a, row.b);
+    }
+    leaders_.resize(states.size());
+    for (std::uint32_t i = 0; i < leaders_.size(); ++i) leaders_[i] = sets.find(i);
+}
+
 bool IterativeContactSolver::may_rebound() const {
-    return std::any_of(restitutions_.begin(), restitutions_.end(), [](double own) { return own > 0.0; });
+    return std::ranges::any_of(restitutions_, [](double own) { return own > 0.0; });
 }
 
 /// Solves the network with rebounds. The solution without rebound determines the connected impacts. Impacts that gain
@@ -75,27 +87,17 @@ bool IterativeContactSolver::apply_restitution() {
     return any;
 }
 
-/// Finds the connected impacts again and computes the energy change of each. The work that separates overlaps does not
-/// count as a gain.
+/// Finds the connected impacts again, and the energy change of each, without the work that separates overlaps.
 void IterativeContactSolver::find_gains() {
     impacts_.assign(before_, rows_);
     gains_.assign(impacts_.size(), {});
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         const ContactConstraint& row = rows_[i];
         if (row.impulse.normal == 0.0) continue;
-        const auto work_in = [&](const std::vector<SolverState>& states) {
-            const SolverState& a = states[row.a];
-            const SolverState& b = states[row.b];
-            double work =
-                row.impulse.normal * separation_speed_of(row, a, b) + dot(row.impulse.tangential, slip_of(row, a, b));
-            if (row.rolling != ContactConstraint::kNone) {
-                const RollingConstraint& rolling = rolling_[row.rolling];
-                work += dot(rolling.moment, rolling_of(row, rolling, a, b));
-            }
-            return work;
-        };
-        const double before = work_in(before_);
-        const double after = work_in(states_);
+        double before = 0.0;
+        double after = 0.0;
+        add_work(row, 0.0, before_, before);
+        add_work(row, 0.0, states_, after);
         Gain& gain = gains_[impacts_.of(row)];
         gain.against += before - row.impulse.normal * partings_[i];
         gain.curvature += after - before;
@@ -105,31 +107,29 @@ void IterativeContactSolver::find_gains() {
 
 bool IterativeContactSolver::Gain::is_gain() const { return against + 0.5 * curvature > kNetworkEnergyRounding * size; }
 
-double IterativeContactSolver::Gain::factor() const { return std::clamp(-2.0 * against / curvature, 0.0, 1.0); }
+double IterativeContactSolver::Gain::factor() const {
+    return is_gain() ? std::clamp(-2.0 * against / curvature, 0.0, 1.0) : 1.0;
+}
 
-/// Reduces the impulses of connected impacts that gain energy until they gain none. Such gains occur if the sweeps end
-/// before convergence.
+/// Reduces the impulses of connected impacts that gain energy because the sweeps have ended before convergence.
 void IterativeContactSolver::remove_energy_gains(SolverReport& report) {
     report.energy_change = 0.0;
     bool any = false;
     for (const Gain& gain : gains_) {
-        const double factor = gain.is_gain() ? gain.factor() : 1.0;
+        const double factor = gain.factor();
         report.energy_change += factor * (gain.against + 0.5 * factor * gain.curvature);
         any = any || factor < 1.0;
     }
     if (!any) return;
     report.is_converged = false;
-    const auto factor_of = [&](std::uint32_t impact) {
-        return gains_[impact].is_gain() ? gains_[impact].factor() : 1.0;
-    };
     for (ContactConstraint& row : rows_) {
-        const double factor = factor_of(impacts_.of(row));
+        const double factor = gains_[impacts_.of(row)].factor();
         row.impulse.normal *= factor;
         row.impulse.tangential *= factor;
         if (row.rolling != ContactConstraint::kNone) rolling_[row.rolling].moment *= factor;
     }
     for (std::uint32_t i = 0; i < bodies_; ++i) {
-        const double factor = factor_of(impacts_.of_body(i));
+        const double factor = gains_[impacts_.of_body(i)].factor();
         if (factor == 1.0) continue;
         states_[i].velocity = before_[i].velocity + factor * (states_[i].velocity - before_[i].velocity);
         states_[i].turning = before_[i].turning + factor * (states_[i].turning - before_[i].turning);

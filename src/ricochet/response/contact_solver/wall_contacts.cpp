@@ -9,14 +9,12 @@
 namespace ricochet {
 namespace {
 
-/// A surface near the sphere.
 struct Near {
     SurfaceId surface;
     CollisionWorld::Nearest nearest;
 };
 
-/// Calls visit(surface) for all surfaces whose distance from a point is at most `within`, in m, and possibly for
-/// others.
+/// Calls visit(surface) for all surfaces within a distance of a point, in m, and possibly for others.
 template <class Visit>
 void visit_near(const CollisionWorld& world, const Vec3& p, double within, const Visit& visit) {
     for (const CollisionWorld::PlaneSurface& plane : world.planes()) {
@@ -41,7 +39,7 @@ void visit_near(const CollisionWorld& world, const Vec3& p, double within, const
 template <class DistanceTo>
 void keep_smallest(std::vector<Near>& near, const Vec3& center, double radius, double same,
                    const DistanceTo& distance_to, std::vector<WallContact>& found) {
-    std::sort(near.begin(), near.end(), [](const Near& a, const Near& b) { return a.surface < b.surface; });
+    std::ranges::sort(near, [](const Near& a, const Near& b) { return a.surface < b.surface; });
     for (std::size_t i = 0; i < near.size(); ++i) {
         const CollisionWorld::Nearest& nearest = near[i].nearest;
         const Vec3 foot = center - nearest.distance * nearest.normal;
@@ -79,8 +77,7 @@ void find_on_body(const MovingColliders& bodies, BodyId body, const TimeOfStep& 
     }
 }
 
-/// Finds the contacts with deforming meshes. A contact point moves with its triangle. Returns true if any triangle may
-/// come near.
+/// Finds the contacts with deforming meshes, which move with their triangles. Returns true if any may come near.
 bool find_on_deforming(const DeformingColliders& deforming, const TimeOfStep& step, const Vec3& center, double radius,
                        double reach, std::vector<WallContact>& found) {
     const double within = radius + reach;

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: contacts of a sphere with the surfaces that it may reach in a step.
+/// Contacts of a sphere with the surfaces that it may reach in a step.
 #pragma once
 
 #include <vector>
@@ -24,15 +24,14 @@ struct WallContact {
 };
 
 /// Appends the contacts of a sphere with gaps up to `reach`, in m, in ascending order of the surfaces. An edge of a
-/// triangle is no contact if a neighbouring triangle is nearer. A floor of many triangles therefore has one contact
-/// with a sphere, not one for each edge nearby. Returns true if any surface is within reach.
+/// triangle is no contact if a neighbouring triangle is nearer, so a floor of many triangles has one contact. Returns
+/// true if any surface is within reach.
 bool find_wall_contacts(const SurfaceGeometry& geometry, const Vec3& center, double radius, double reach,
                         std::vector<WallContact>& found);
 
 /// Appends the contacts with colliders at rest, and with moving colliders that come near in a step. Gaps are those at
-/// the start of the step. Normals of rigid colliders are those in the middle of the step. The mean velocity of a point
-/// on a rotating surface has no component along these normals. Normals at the start of the step would give a rotating
-/// drum a normal velocity. Returns true if any surface may come within reach in the step.
+/// the start of the step. Normals of rigid colliders are those in the middle of the step. Normals at the start of the
+/// step would give a rotating drum a normal velocity. Returns true if any surface may come within reach in the step.
 bool find_wall_contacts(const MovingColliders& bodies, const SurfaceGeometry& at_rest, const TimeOfStep& step,
                         const Vec3& center, double radius, double reach, std::vector<WallContact>& found);
 

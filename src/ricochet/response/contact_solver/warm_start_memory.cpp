@@ -15,8 +15,7 @@ constexpr std::size_t kNetworkMemoryPrefetchDistance = 8;
 
 }  // namespace
 
-/// Sorts indices by particle, and then the few contacts of each particle. The entries themselves are too large to be
-/// moved repeatedly.
+/// Sorts indices by particle, and then the few contacts of each, because entries are too large to be moved repeatedly.
 void WarmStartMemory::replace(std::span<const std::vector<Entry>* const> lists) {
     std::vector<const Entry*> all;
     order_.clear();
@@ -62,7 +61,7 @@ bool WarmStartMemory::is_sound(std::uint64_t next_id, std::size_t surfaces) cons
                is_finite(impulse.tangential) && is_finite(impulse.moment);
     };
     const auto is_out_of_order = [](const Entry& a, const Entry& b) { return !(a.key < b.key); };
-    return std::all_of(entries_.begin(), entries_.end(), is_entry_sound) &&
+    return std::ranges::all_of(entries_, is_entry_sound) &&
            std::adjacent_find(entries_.begin(), entries_.end(), is_out_of_order) == entries_.end();
 }
 

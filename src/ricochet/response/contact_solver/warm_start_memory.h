@@ -1,6 +1,5 @@
 /// \file
-/// Private to the responses: contact impulses of the last step, by particle and partner, as start values of the next
-/// step.
+/// Contact impulses of the last step, by particle and partner, as start values of the next step.
 #pragma once
 
 #include <algorithm>
@@ -78,8 +77,7 @@ public:
         if (entries_.empty()) return false;
         return std::any_of(begin, end, [&](const auto& particle) {
             const std::span<const Entry> own = of_particle(id_of(particle)).entries();
-            return std::any_of(own.begin(), own.end(),
-                               [](const Entry& entry) { return !entry.key.is_wall() && !entry.rebounds; });
+            return std::ranges::any_of(own, [](const Entry& entry) { return !entry.key.is_wall() && !entry.rebounds; });
         });
     }
     [[nodiscard]] std::size_t size() const { return entries_.size(); }

@@ -49,24 +49,18 @@ BodyState moved(const BodyState& now, const Vec3& velocity, const ContactForces&
             {now.motion.velocity + t * forces.acceleration, now.motion.spin + t * forces.spin_acceleration}};
 }
 
-/// Scratch lists of one thread.
-struct PenaltyScratch {
-    SideScratch sides;
-    std::vector<Proximity> stage;
-};
-
 class PenaltyMover {
 public:
     PenaltyMover(const ResponseRules& rules, const SignedDistance& distance, std::span<const double> damping_ratios,
-                 MovingParticle& particle, MoveScratch& scratch, PenaltyScratch& lists)
+                 MovingParticle& particle, MoveScratch& scratch, SideScratch& lists)
         : rules_(rules),
           damping_ratios_(damping_ratios),
           particle_(particle),
           state_(particle.state),
           scratch_(scratch),
           impact_(rules, particle, scratch, outcome_),
-          watch_(distance, particle.sides, particle.state.radius, lists.sides),
-          seen_(lists.sides.seen),
+          watch_(distance, particle.sides, particle.state.radius, lists),
+          seen_(lists.seen),
           stage_(lists.stage) {}
 
     MoveOutcome run(double duration);
@@ -74,6 +68,7 @@ public:
     [[nodiscard]] SupportedAcceleration supported_acceleration(const Vec3& pull);
 
 private:
+    void find_present();
     void survey(double duration);
     bool substep(double h);
     std::optional<BodyState> stepped(const BodyState& now, double h);
@@ -101,8 +96,7 @@ private:
 MoveOutcome PenaltyMover::run(double duration) {
     const double h = duration / rules_.settings.penalty.substeps;
     substep_ = h;
-    seen_.clear();
-    if (watch_.in_contact()) watch_.find_near(state_.position, state_.position, 0.0, seen_);
+    find_present();
     if (rules_.settings.penalty.substeps > 1) survey(duration);
     for (std::uint32_t k = 0; k < rules_.settings.penalty.substeps; ++k) {
         if (!substep(h)) {
@@ -117,10 +111,15 @@ MoveOutcome PenaltyMover::run(double duration) {
 
 SupportedAcceleration PenaltyMover::supported_acceleration(const Vec3& pull) {
     substep_ = rules_.settings.time_step / rules_.settings.penalty.substeps;
-    seen_.clear();
-    if (watch_.in_contact()) watch_.find_near(state_.position, state_.position, 0.0, seen_);
+    find_present();
     const ContactForces contact_force = force_at({state_.position, particle_.motion()}, state_.time, seen_, 0.0);
     return {pull + (contact_force.acceleration - rules_.forces.acceleration(state_)), contact_force.spin_acceleration};
+}
+
+/// Finds the contacts at the particle's present position.
+void PenaltyMover::find_present() {
+    seen_.clear();
+    if (watch_.in_contact()) watch_.find_near(state_.position, state_.position, 0.0, seen_);
 }
 
 /// Makes one wide query, which replaces the queries of the sub-steps while nothing is near.
@@ -341,13 +340,13 @@ PenaltyResponse::PenaltyResponse(const ResponseRules& rules) : SidedResponse(rul
 }
 
 MoveOutcome PenaltyResponse::move(MovingParticle& particle, double duration, MoveScratch& scratch) const {
-    thread_local PenaltyScratch lists;
+    thread_local SideScratch lists;
     return PenaltyMover(rules_, distance_, damping_ratios_, particle, scratch, lists).run(duration);
 }
 
 SupportedAcceleration PenaltyResponse::supported_acceleration(const MovingParticle& particle, const Vec3& pull) const {
     ProbedParticle probe(particle);
-    PenaltyScratch lists;
+    SideScratch lists;
     return PenaltyMover(rules_, distance_, damping_ratios_, probe.particle, probe.scratch, lists)
         .supported_acceleration(pull);
 }

@@ -25,6 +25,7 @@ struct Proximity {
 struct SideScratch {
     std::vector<SurfacePoint> points;
     std::vector<Proximity> seen;
+    std::vector<Proximity> stage;  ///< at a stage of an integrator
     std::vector<ContactSurface> contacts;
 };
 

@@ -139,9 +139,9 @@ SweepChange sweep_plainly(Rows& all, double factor) {
     return change;
 }
 
-SweepChange sweep(Rows& all, double factor, SweepVariant translation) {
-    go_on(all.states, all.last, factor, translation);
-    return sweep_rows({all.rows, all.rolling, all.states}, factor, translation);
+SweepChange sweep(Rows& all, double factor, VectorUnit unit) {
+    go_on(all.states, all.last, factor, unit);
+    return sweep_rows({all.rows, all.rolling, all.states}, factor, unit);
 }
 
 void expect_same_bits(double a, double b) {
@@ -189,13 +189,13 @@ constexpr std::array<std::size_t, 12> kCounts{0, 1, 2, 3, 4, 5, 8, 11, 63, 64, 6
 TEST(NetworkSweep, EveryVariantGivesTheBitsOfAScalarSweep) {
     for (int seed = 0; seed < test::scaled(50); ++seed) {
         for (const std::size_t count : kCounts) {
-            for (const SweepVariant translation : sweep_variants()) {
-                SCOPED_TRACE(testing::Message() << seed << ' ' << count << ' ' << static_cast<int>(translation));
+            for (const VectorUnit unit : vector_units()) {
+                SCOPED_TRACE(testing::Message() << seed << ' ' << count << ' ' << static_cast<int>(unit));
                 Rows expected = random_rows(static_cast<std::uint64_t>(seed), count);
                 Rows all = expected;
                 for (const double factor : {0.4, 0.0, 0.25, 0.6}) {
                     const SweepChange wanted = sweep_plainly(expected, factor);
-                    const SweepChange change = sweep(all, factor, translation);
+                    const SweepChange change = sweep(all, factor, unit);
                     expect_same_bits(change.squared, wanted.squared);
                     expect_same_bits(change.approach_squared, wanted.approach_squared);
                     expect_same_bits(change.slip_squared, wanted.slip_squared);
@@ -214,8 +214,8 @@ TEST(NetworkSweep, IdleConstraintsChangeNothing) {
         row.bound = INFINITY;
     }
     const Rows before = all;
-    for (const SweepVariant translation : sweep_variants()) {
-        const SweepChange change = sweep_rows({all.rows, all.rolling, all.states}, 0.5, translation);
+    for (const VectorUnit unit : vector_units()) {
+        const SweepChange change = sweep_rows({all.rows, all.rolling, all.states}, 0.5, unit);
         EXPECT_EQ(change.squared, 0.0);
         EXPECT_EQ(change.worst(), 0.0);
         expect_same_bits(all, before);

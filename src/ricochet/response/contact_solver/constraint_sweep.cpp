@@ -145,23 +145,12 @@ private:
 
 }  // namespace
 
-std::span<const SweepVariant> sweep_variants() {
-    static constexpr std::array kVariants{SweepVariant::one_by_one, SweepVariant::avx2, SweepVariant::avx512};
+SweepChange sweep_rows(const SweptRows& swept, double factor, VectorUnit unit) {
 #if defined(__x86_64__)
-    static const std::size_t count =
-        __builtin_cpu_supports("avx512vl") != 0 ? 3 : (__builtin_cpu_supports("avx2") != 0 ? 2 : 1);
-#else
-    constexpr std::size_t count = 1;
+    if (unit == VectorUnit::avx512) return sweep_avx512(swept, factor);
+    if (unit == VectorUnit::avx2) return sweep_avx2(swept, factor);
 #endif
-    return std::span(kVariants).first(count);
-}
-
-SweepChange sweep_rows(const SweptRows& swept, double factor, SweepVariant variant) {
-#if defined(__x86_64__)
-    if (variant == SweepVariant::avx512) return sweep_avx512(swept, factor);
-    if (variant == SweepVariant::avx2) return sweep_avx2(swept, factor);
-#endif
-    static_cast<void>(variant);
+    static_cast<void>(unit);
     SweepChange change;
     for (ContactConstraint& row : swept.rows) {
         if (!is_idle(swept, row)) relax_one(swept, factor, row, change);
@@ -169,18 +158,18 @@ SweepChange sweep_rows(const SweptRows& swept, double factor, SweepVariant varia
     return change;
 }
 
-void go_on(std::span<SolverState> states, std::span<SolverState> last, double factor, SweepVariant variant) {
+void go_on(std::span<SolverState> states, std::span<SolverState> last, double factor, VectorUnit unit) {
     if (factor == 0.0) {
         std::copy(states.begin(), states.end(), last.begin());
         return;
     }
 #if defined(__x86_64__)
-    if (variant != SweepVariant::one_by_one) {
+    if (unit != VectorUnit::baseline) {
         go_on_avx2(states, last, factor);
         return;
     }
 #endif
-    static_cast<void>(variant);
+    static_cast<void>(unit);
     for (std::size_t i = 0; i < states.size(); ++i) {
         const SolverState now = states[i];
         states[i].velocity += factor * (now.velocity - last[i].velocity);

@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "ricochet/core/vector_unit.h"
 #include "ricochet/response/contact_solver/contact_constraints.h"
 
 namespace ricochet {
@@ -15,20 +16,11 @@ struct SweptRows {
     std::span<SolverState> states;
 };
 
-/// Instruction set of a sweep. All give bit-identical results.
-enum class SweepVariant {
-    one_by_one,
-    avx2,   ///< four rows at once; no two rows may share a body that is not fixed
-    avx512  ///< four rows at once, with twice as many registers
-};
-
-/// Returns the instruction sets that this processor has, the fastest last.
-[[nodiscard]] std::span<const SweepVariant> sweep_variants();
-
-/// Solves each row that is not idle, after a momentum step of `factor` times its last change.
-[[nodiscard]] SweepChange sweep_rows(const SweptRows& swept, double factor, SweepVariant variant);
+/// Solves each row that is not idle, after a momentum step of `factor` times its last change. With the baseline unit
+/// rows are solved one by one, else four at once: then no two rows may share a body that is not fixed.
+[[nodiscard]] SweepChange sweep_rows(const SweptRows& swept, double factor, VectorUnit unit);
 
 /// Applies the momentum step to bodies: `factor` times their change since `last`, which then gets their states before.
-void go_on(std::span<SolverState> states, std::span<SolverState> last, double factor, SweepVariant variant);
+void go_on(std::span<SolverState> states, std::span<SolverState> last, double factor, VectorUnit unit);
 
 }  // namespace ricochet

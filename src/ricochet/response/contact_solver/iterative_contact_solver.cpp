@@ -218,22 +218,22 @@ bool IterativeContactSolver::sweep_until(const SolverSettings& settings, int mos
 /// Solves every contact once, after a momentum step of contacts and bodies: `factor` times their last change.
 SweepChange IterativeContactSolver::sweep(double factor) {
     go_on(factor);
-    const auto sweep_part = [&](std::size_t begin, std::size_t end, SweepVariant variant) {
-        return sweep_rows({std::span(rows_).subspan(begin, end - begin), rolling_, states_}, factor, variant);
+    const auto sweep_part = [&](std::size_t begin, std::size_t end, VectorUnit unit) {
+        return sweep_rows({std::span(rows_).subspan(begin, end - begin), rolling_, states_}, factor, unit);
     };
     SweepChange all;
     for (std::size_t color = 0; color < coloring_.colors(); ++color) {
         const std::size_t first = coloring_.begin_of(color);
         const std::size_t count = coloring_.end_of(color) - first;
         const bool is_serial = coloring_.is_serial(color);
-        const SweepVariant variant = is_serial ? SweepVariant::one_by_one : sweep_variants().back();
+        const VectorUnit unit = is_serial ? VectorUnit::baseline : vector_units().back();
         if (count <= kBlock || is_serial) {
-            all.add(sweep_part(first, first + count, variant));
+            all.add(sweep_part(first, first + count, unit));
             continue;
         }
         blocks_.assign((count + kBlock - 1) / kBlock, {});
         parallel_for_blocks(count, kBlock, [&](std::size_t k, std::size_t begin, std::size_t end) {
-            blocks_[k] = sweep_part(first + begin, first + end, variant);
+            blocks_[k] = sweep_part(first + begin, first + end, unit);
         });
         for (const SweepChange& block : blocks_) all.add(block);
     }
@@ -245,7 +245,7 @@ void IterativeContactSolver::go_on(double factor) {
     const auto go = [&](std::size_t, std::size_t begin, std::size_t end) {
         const std::size_t count = end - begin;
         ricochet::go_on(std::span(states_).subspan(begin, count), std::span(last_).subspan(begin, count), factor,
-                        sweep_variants().back());
+                        vector_units().back());
     };
     if (bodies_ <= kBlock) {
         go(0, 0, bodies_);

@@ -208,9 +208,9 @@ class PlaneCollider(Thing):
     material: Name of a material in `materials`.
     looks: Appearance in pictures.
     frame: Name of a frame in `frames`. The collider stands in it and moves with it. Requires the response "exact".
-    motion: Poses of a frame of its own in order of time, at least one: `{"time": ..., "position": ..., "rotation":
-        ..., "scale": ...}`. They are relative to `frame` if that is given, too. The collider's own position and
-        rotation are relative to the poses.
+    motion: Poses that the collider moves through, in order of time: `{"time": ..., "position": ..., "rotation":
+        ..., "scale": ...}`. At least one pose is required. The poses are relative to `frame` if that key is
+        present. The collider's own position and rotation are relative to the poses.
     point: A point on the plane. Unit: m. Default: [0, 0, 0].
     normal: Normal of the plane, of any length. Required.
     """
@@ -225,9 +225,9 @@ class MeshCollider(Thing):
     material: Name of a material in `materials`.
     looks: Appearance in pictures.
     frame: Name of a frame in `frames`. The collider stands in it and moves with it. Requires the response "exact".
-    motion: Poses of a frame of its own in order of time, at least one: `{"time": ..., "position": ..., "rotation":
-        ..., "scale": ...}`. They are relative to `frame` if that is given, too. The collider's own position and
-        rotation are relative to the poses.
+    motion: Poses that the collider moves through, in order of time: `{"time": ..., "position": ..., "rotation":
+        ..., "scale": ...}`. At least one pose is required. The poses are relative to `frame` if that key is
+        present. The collider's own position and rotation are relative to the poses.
     file: Mesh file: OBJ, PLY, STL, OFF or glTF (.gltf, .glb). Required.
     up: Axis of the file that points up. In scenes it is z. With y, (x, y, z) is read as (x, -z, y), before the
         scale.
@@ -253,9 +253,9 @@ class SphereCollider(Thing):
     material: Name of a material in `materials`.
     looks: Appearance in pictures.
     frame: Name of a frame in `frames`. The collider stands in it and moves with it. Requires the response "exact".
-    motion: Poses of a frame of its own in order of time, at least one: `{"time": ..., "position": ..., "rotation":
-        ..., "scale": ...}`. They are relative to `frame` if that is given, too. The collider's own position and
-        rotation are relative to the poses.
+    motion: Poses that the collider moves through, in order of time: `{"time": ..., "position": ..., "rotation":
+        ..., "scale": ...}`. At least one pose is required. The poses are relative to `frame` if that key is
+        present. The collider's own position and rotation are relative to the poses.
     radius: Its radius. Unit: m. Required.
     position: Position of its origin. Scale and rotation are applied first. Unit: m. Default: [0, 0, 0].
     rotation: Rotation about its origin.
@@ -272,9 +272,9 @@ class CylinderCollider(Thing):
     material: Name of a material in `materials`.
     looks: Appearance in pictures.
     frame: Name of a frame in `frames`. The collider stands in it and moves with it. Requires the response "exact".
-    motion: Poses of a frame of its own in order of time, at least one: `{"time": ..., "position": ..., "rotation":
-        ..., "scale": ...}`. They are relative to `frame` if that is given, too. The collider's own position and
-        rotation are relative to the poses.
+    motion: Poses that the collider moves through, in order of time: `{"time": ..., "position": ..., "rotation":
+        ..., "scale": ...}`. At least one pose is required. The poses are relative to `frame` if that key is
+        present. The collider's own position and rotation are relative to the poses.
     radius: Its radius. Unit: m. Required.
     height: Its height. Unit: m. Required.
     position: Position of its origin. Scale and rotation are applied first. Unit: m. Default: [0, 0, 0].
@@ -292,9 +292,9 @@ class BoxCollider(Thing):
     material: Name of a material in `materials`.
     looks: Appearance in pictures.
     frame: Name of a frame in `frames`. The collider stands in it and moves with it. Requires the response "exact".
-    motion: Poses of a frame of its own in order of time, at least one: `{"time": ..., "position": ..., "rotation":
-        ..., "scale": ...}`. They are relative to `frame` if that is given, too. The collider's own position and
-        rotation are relative to the poses.
+    motion: Poses that the collider moves through, in order of time: `{"time": ..., "position": ..., "rotation":
+        ..., "scale": ...}`. At least one pose is required. The poses are relative to `frame` if that key is
+        present. The collider's own position and rotation are relative to the poses.
     size: Full edge lengths. Unit: m. Required.
     position: Position of its origin. Scale and rotation are applied first. Unit: m. Default: [0, 0, 0].
     rotation: Rotation about its origin.
@@ -361,15 +361,16 @@ class CurvesOverLife(Thing):
     color: Factors of the colour, for red, green and blue.
     opacity: Factor of the opacity.
     size: Factor of the drawn size.
-    attributes: Factors of attributes with one component, by name.
-    vector_attributes: Factors of attributes with three components, by name.
+    attributes: Curves of factors for attributes with one component. The keys are the names of the attributes.
+    vector_attributes: Curves of factors for attributes with three components. The keys are the names of the
+        attributes.
     """
 
 
 class SeriesDeformation(Thing):
     """A numbered series of meshes.
 
-    ends: Vertices before the first and after the last key. Default: "hold".
+    ends: Positions of the vertices before the first key and after the last key. Default: "hold".
     files: OBJ, PLY or OFF files with the faces of the collider's `file` and consecutive numbers. Required.
     frame_rate: Frames per second. Unit: 1/s. Default: 25.
     start: Time of the first file, or of frame 0 of a cache. Unit: s. Default: 0.
@@ -381,7 +382,7 @@ class SeriesDeformation(Thing):
 class KeysDeformation(Thing):
     """Meshes with a time for each.
 
-    ends: Vertices before the first and after the last key. Default: "hold".
+    ends: Positions of the vertices before the first key and after the last key. Default: "hold".
     keys: Keys in order of time. Required.
     """
 
@@ -391,7 +392,7 @@ class KeysDeformation(Thing):
 class CacheDeformation(Thing):
     """A point cache beside the mesh, in the PC2 format.
 
-    ends: Vertices before the first and after the last key. Default: "hold".
+    ends: Positions of the vertices before the first key and after the last key. Default: "hold".
     file: Cache file with one point per vertex of the collider's `file`, in the same order. Its header gives the
         start frame and the frames between samples. Required.
     frame_rate: Frames per second. Unit: 1/s. Default: 25.
@@ -437,8 +438,9 @@ class PointEmitter(Thing):
     particle_radius: Radius of a particle. Unit: m. Default: 0.
     frame: Name of a frame in `frames`. Shape, direction and velocity are in its coordinates. Particles also get the
         frame's velocity at the time and position of their birth.
-    color: Red, green and blue, 0 to 1 (linear light). Values that spread beyond are clamped.
-    opacity: Opacity from 0 (invisible) to 1 (covers everything behind). Values that spread beyond are clamped.
+    color: Red, green and blue, 0 to 1 (linear light). Drawn values outside this range are clamped.
+    opacity: Opacity from 0 (invisible) to 1 (covers everything behind). Drawn values outside this range are
+        clamped.
     particle_size: Drawn radius. Collisions use `particle_radius`. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
     material: Material of the particles: a name in `particle_contacts.materials`.
@@ -475,8 +477,9 @@ class DiskEmitter(Thing):
     particle_radius: Radius of a particle. Unit: m. Default: 0.
     frame: Name of a frame in `frames`. Shape, direction and velocity are in its coordinates. Particles also get the
         frame's velocity at the time and position of their birth.
-    color: Red, green and blue, 0 to 1 (linear light). Values that spread beyond are clamped.
-    opacity: Opacity from 0 (invisible) to 1 (covers everything behind). Values that spread beyond are clamped.
+    color: Red, green and blue, 0 to 1 (linear light). Drawn values outside this range are clamped.
+    opacity: Opacity from 0 (invisible) to 1 (covers everything behind). Drawn values outside this range are
+        clamped.
     particle_size: Drawn radius. Collisions use `particle_radius`. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
     material: Material of the particles: a name in `particle_contacts.materials`.
@@ -515,8 +518,9 @@ class BoxEmitter(Thing):
     particle_radius: Radius of a particle. Unit: m. Default: 0.
     frame: Name of a frame in `frames`. Shape, direction and velocity are in its coordinates. Particles also get the
         frame's velocity at the time and position of their birth.
-    color: Red, green and blue, 0 to 1 (linear light). Values that spread beyond are clamped.
-    opacity: Opacity from 0 (invisible) to 1 (covers everything behind). Values that spread beyond are clamped.
+    color: Red, green and blue, 0 to 1 (linear light). Drawn values outside this range are clamped.
+    opacity: Opacity from 0 (invisible) to 1 (covers everything behind). Drawn values outside this range are
+        clamped.
     particle_size: Drawn radius. Collisions use `particle_radius`. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
     material: Material of the particles: a name in `particle_contacts.materials`.
@@ -554,8 +558,9 @@ class SphereEmitter(Thing):
     particle_radius: Radius of a particle. Unit: m. Default: 0.
     frame: Name of a frame in `frames`. Shape, direction and velocity are in its coordinates. Particles also get the
         frame's velocity at the time and position of their birth.
-    color: Red, green and blue, 0 to 1 (linear light). Values that spread beyond are clamped.
-    opacity: Opacity from 0 (invisible) to 1 (covers everything behind). Values that spread beyond are clamped.
+    color: Red, green and blue, 0 to 1 (linear light). Drawn values outside this range are clamped.
+    opacity: Opacity from 0 (invisible) to 1 (covers everything behind). Drawn values outside this range are
+        clamped.
     particle_size: Drawn radius. Collisions use `particle_radius`. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
     material: Material of the particles: a name in `particle_contacts.materials`.
@@ -594,8 +599,9 @@ class MeshEmitter(Thing):
     particle_radius: Radius of a particle. Unit: m. Default: 0.
     frame: Name of a frame in `frames`. Shape, direction and velocity are in its coordinates. Particles also get the
         frame's velocity at the time and position of their birth.
-    color: Red, green and blue, 0 to 1 (linear light). Values that spread beyond are clamped.
-    opacity: Opacity from 0 (invisible) to 1 (covers everything behind). Values that spread beyond are clamped.
+    color: Red, green and blue, 0 to 1 (linear light). Drawn values outside this range are clamped.
+    opacity: Opacity from 0 (invisible) to 1 (covers everything behind). Drawn values outside this range are
+        clamped.
     particle_size: Drawn radius. Collisions use `particle_radius`. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
     material: Material of the particles: a name in `particle_contacts.materials`.
@@ -639,8 +645,9 @@ class ConeEmitter(Thing):
     particle_radius: Radius of a particle. Unit: m. Default: 0.
     frame: Name of a frame in `frames`. Shape, direction and velocity are in its coordinates. Particles also get the
         frame's velocity at the time and position of their birth.
-    color: Red, green and blue, 0 to 1 (linear light). Values that spread beyond are clamped.
-    opacity: Opacity from 0 (invisible) to 1 (covers everything behind). Values that spread beyond are clamped.
+    color: Red, green and blue, 0 to 1 (linear light). Drawn values outside this range are clamped.
+    opacity: Opacity from 0 (invisible) to 1 (covers everything behind). Drawn values outside this range are
+        clamped.
     particle_size: Drawn radius. Collisions use `particle_radius`. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
     material: Material of the particles: a name in `particle_contacts.materials`.
@@ -680,8 +687,9 @@ class ChildEmitter(Thing):
     particle_radius: Radius of a particle. Unit: m. Default: 0.
     frame: Name of a frame in `frames`. Shape, direction and velocity are in its coordinates. Particles also get the
         frame's velocity at the time and position of their birth.
-    color: Red, green and blue, 0 to 1 (linear light). Values that spread beyond are clamped.
-    opacity: Opacity from 0 (invisible) to 1 (covers everything behind). Values that spread beyond are clamped.
+    color: Red, green and blue, 0 to 1 (linear light). Drawn values outside this range are clamped.
+    opacity: Opacity from 0 (invisible) to 1 (covers everything behind). Drawn values outside this range are
+        clamped.
     particle_size: Drawn radius. Collisions use `particle_radius`. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
     material: Material of the particles: a name in `particle_contacts.materials`.

@@ -4,19 +4,20 @@
 #include <Eigen/Sparse>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <utility>
 
-#include "ricochet/dynamics/dense_front.h"
+// Tells GCC that the columns do not overlap, so that it vectorizes a loop over rows. Other compilers test for overlap
+// at run time.
+#if defined(__GNUC__) && !defined(__clang__)
+#define RICOCHET_INDEPENDENT_ROWS _Pragma("GCC ivdep")
+#else
+#define RICOCHET_INDEPENDENT_ROWS
+#endif
 
 namespace ricochet {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-
-/// Largest fraction of zeros in a front. Consecutive columns are merged into one front up to this limit. Larger dense
-/// matrices are faster, and this gain exceeds the cost of operations on some zeros. Local, because the limit affects
-/// only the cost and the rounding.
+/// Largest fraction of zeros in a front, up to which consecutive columns are merged. The speed of larger dense matrices
+/// exceeds the cost of operations on some zeros. Local, because the limit affects only the cost and the rounding.
 constexpr double kMostZeros = 0.2;
 
 using Pair = BlockCholesky::Pair;
@@ -63,39 +64,29 @@ std::vector<std::uint32_t> united(const std::vector<std::uint32_t>& a, const std
     return result;
 }
 
-/// Returns the parent of every row in the elimination tree: the first row below the diagonal with a nonzero in its
-/// column of L.
-std::vector<std::uint32_t> parents_of(const Lists& later) {
-    std::vector<std::uint32_t> parent(later.size(), kNone);
-    std::vector<std::uint32_t> ancestor(later.size(), kNone);
-    Lists earlier(later.size());
-    for (std::uint32_t k = 0; k < later.size(); ++k) {
-        for (const std::uint32_t row : later[k]) earlier[row].push_back(k);
+/// Returns the nonzero structure of L: for every column, the rows below its diagonal, ascending.
+Lists structure_of(std::span<const std::uint32_t> order, std::span<const Pair> pairs) {
+    Lists structure = later_neighbours(order, pairs);
+    for (const std::vector<std::uint32_t>& below : structure) {
+        if (below.empty()) continue;
+        std::vector<std::uint32_t>& of_parent = structure[below.front()];
+        of_parent = united(of_parent, {below.begin() + 1, below.end()});
     }
-    for (std::uint32_t row = 0; row < later.size(); ++row) {
-        for (std::uint32_t k : earlier[row]) {
-            while (k != kNone && k < row) {
-                const std::uint32_t next = std::exchange(ancestor[k], row);
-                if (next == kNone) parent[k] = row;
-                k = next;
-            }
-        }
-    }
-    return parent;
+    return structure;
 }
 
 /// Returns the position of each row in a postorder, in which every subtree is contiguous.
-std::vector<std::uint32_t> postorder(const std::vector<std::uint32_t>& parent) {
-    const auto count = static_cast<std::uint32_t>(parent.size());
+std::vector<std::uint32_t> postorder(const Lists& structure) {
+    const auto count = static_cast<std::uint32_t>(structure.size());
     std::vector<std::uint32_t> below(count, 1);  // number of rows in the subtree of each row, itself included
     for (std::uint32_t k = 0; k < count; ++k) {
-        if (parent[k] != kNone) below[parent[k]] += below[k];
+        if (!structure[k].empty()) below[structure[k].front()] += below[k];
     }
     std::vector<std::uint32_t> free(count, 0);  // first free position for the next child of each row
     std::vector<std::uint32_t> slot(count, 0);
     std::uint32_t of_roots = 0;
     for (std::uint32_t k = count; k-- > 0;) {
-        std::uint32_t& first = parent[k] == kNone ? of_roots : free[parent[k]];
+        std::uint32_t& first = structure[k].empty() ? of_roots : free[structure[k].front()];
         free[k] = first;
         first += below[k];
         slot[k] = first - 1;
@@ -103,37 +94,114 @@ std::vector<std::uint32_t> postorder(const std::vector<std::uint32_t>& parent) {
     return slot;
 }
 
-}  // namespace
+/// Number of columns in a panel. A panel is eliminated before the columns to its right are updated.
+constexpr std::size_t kPanel = 24;
 
-/// Nonzero structure of L.
-struct BlockCholesky::Structure {
-    std::vector<std::uint32_t> parent;
-    Lists below;  // for every column, the rows below its diagonal, ascending
+/// Lower half of a matrix, stored by columns.
+struct Lower {
+    double* values;
+    std::size_t rows;
+    [[nodiscard]] double* column(std::size_t j) const { return values + j * rows; }
 };
 
-BlockCholesky::BlockCholesky(std::size_t rows, std::span<const Pair> pairs) {
-    std::vector<std::uint32_t> order(rows);
+/// Subtracts the contributions of columns k to `end` of L from columns j and j + 1, from row j on. Four columns of L
+/// are processed together, so each load and store of an entry serves four products.
+void update_two(const Lower& m, std::size_t j, std::size_t k, std::size_t end) {
+    double* const c0 = m.column(j);
+    double* const c1 = m.column(j + 1);
+    for (; k + 3 < end; k += 4) {
+        const double* const a0 = m.column(k);
+        const double* const a1 = m.column(k + 1);
+        const double* const a2 = m.column(k + 2);
+        const double* const a3 = m.column(k + 3);
+        const double b00 = a0[j];
+        const double b01 = a1[j];
+        const double b02 = a2[j];
+        const double b03 = a3[j];
+        const double b10 = a0[j + 1];
+        const double b11 = a1[j + 1];
+        const double b12 = a2[j + 1];
+        const double b13 = a3[j + 1];
+        c0[j] -= (a0[j] * b00 + a1[j] * b01) + (a2[j] * b02 + a3[j] * b03);
+        RICOCHET_INDEPENDENT_ROWS
+        for (std::size_t i = j + 1; i < m.rows; ++i) {
+            c0[i] -= (a0[i] * b00 + a1[i] * b01) + (a2[i] * b02 + a3[i] * b03);
+            c1[i] -= (a0[i] * b10 + a1[i] * b11) + (a2[i] * b12 + a3[i] * b13);
+        }
+    }
+    for (; k < end; ++k) {
+        const double* const a = m.column(k);
+        const double b0 = a[j];
+        const double b1 = a[j + 1];
+        c0[j] -= a[j] * b0;
+        RICOCHET_INDEPENDENT_ROWS
+        for (std::size_t i = j + 1; i < m.rows; ++i) {
+            c0[i] -= a[i] * b0;
+            c1[i] -= a[i] * b1;
+        }
+    }
+}
+
+void update_one(const Lower& m, std::size_t j, std::size_t k, std::size_t end) {
+    double* const c = m.column(j);
+    for (; k < end; ++k) {
+        const double* const a = m.column(k);
+        const double b = a[j];
+        RICOCHET_INDEPENDENT_ROWS
+        for (std::size_t i = j; i < m.rows; ++i) c[i] -= a[i] * b;
+    }
+}
+
+/// Eliminates the columns from `begin` to `end`, which already contain the updates of earlier panels.
+bool eliminate_panel(const Lower& m, std::size_t begin, std::size_t end) {
+    for (std::size_t j = begin; j < end; ++j) {
+        update_one(m, j, begin, j);
+        double* const column = m.column(j);
+        if (!(column[j] > 0.0)) return false;
+        const double root = std::sqrt(column[j]);
+        column[j] = root;
+        const double factor = 1.0 / root;
+        for (std::size_t i = j + 1; i < m.rows; ++i) column[i] *= factor;
+    }
+    return true;
+}
+
+/// Eliminates the first `columns` columns of a symmetric matrix with `rows` rows. The matrix stores its lower half by
+/// columns. The eliminated columns become columns of L, and the rest becomes the Schur complement. Returns false if the
+/// matrix is not positive definite.
+bool eliminate(std::span<double> matrix, std::size_t rows, std::size_t columns) {
+    const Lower m{matrix.data(), rows};
+    for (std::size_t begin = 0; begin < columns; begin += kPanel) {
+        const std::size_t end = std::min(columns, begin + kPanel);
+        if (!eliminate_panel(m, begin, end)) return false;
+        std::size_t j = end;
+        for (; j + 1 < rows; j += 2) update_two(m, j, begin, end);
+        if (j < rows) update_one(m, j, begin, end);
+    }
+    return true;
+}
+
+}  // namespace
+
+BlockCholesky::BlockCholesky(std::size_t rows, std::span<const Pair> pairs) : order_(rows) {
     const std::vector<std::uint32_t> eliminated = elimination_order(rows, pairs);
-    for (std::uint32_t k = 0; k < rows; ++k) order[eliminated[k]] = k;
-    const std::vector<std::uint32_t> slot = postorder(parents_of(later_neighbours(order, pairs)));
-    for (std::uint32_t& k : order) k = slot[k];
-    order_ = std::move(order);
-    Structure structure{{}, later_neighbours(order_, pairs)};
-    structure.parent.assign(rows, kNone);
+    for (std::uint32_t k = 0; k < rows; ++k) order_[eliminated[k]] = k;
+    const Lists unsorted = structure_of(order_, pairs);
+    const std::vector<std::uint32_t> slot = postorder(unsorted);
+    for (std::uint32_t& k : order_) k = slot[k];
+    // The rows below a diagonal are ancestors of its column, and a postorder keeps the order of ancestors.
+    Lists structure(rows);
     for (std::uint32_t k = 0; k < rows; ++k) {
-        const std::vector<std::uint32_t>& below = structure.below[k];
-        if (below.empty()) continue;
-        const std::uint32_t parent = structure.parent[k] = below.front();
-        structure.below[parent] = united(structure.below[parent], {below.begin() + 1, below.end()});
+        for (const std::uint32_t row : unsorted[k]) structure[slot[k]].push_back(slot[row]);
     }
     make_fronts(structure);
     place_entries(pairs);
 }
 
 /// Groups the columns into fronts. A column joins the front of the column before it if both have nonzeros in almost the
-/// same rows.
-void BlockCholesky::make_fronts(const Structure& structure) {
-    const auto rows = static_cast<std::uint32_t>(structure.below.size());
+/// same rows. structure: for every column, the rows below its diagonal.
+void BlockCholesky::make_fronts(const Lists& structure) {
+    const auto rows = static_cast<std::uint32_t>(structure.size());
     front_of_.assign(rows, 0);
     for (std::uint32_t k = 0; k < rows;) {
         Front front;
@@ -141,16 +209,16 @@ void BlockCholesky::make_fronts(const Structure& structure) {
         double filled = 0.0;  // number of nonzero blocks
         for (;; ++k) {
             const auto count = static_cast<double>(k + 1 - front.begin);
-            filled += 1.0 + static_cast<double>(structure.below[k].size());
+            filled += 1.0 + static_cast<double>(structure[k].size());
             front_of_[k] = static_cast<std::uint32_t>(fronts_.size());
-            if (structure.parent[k] != k + 1) break;
-            const double next = 1.0 + static_cast<double>(structure.below[k + 1].size());
+            if (structure[k].empty() || structure[k].front() != k + 1) break;
+            const double next = 1.0 + static_cast<double>(structure[k + 1].size());
             const double stored = next * (count + 1.0) + 0.5 * count * (count + 1.0);
             if (stored - filled - next > kMostZeros * stored) break;
         }
         ++k;
         front.count = k - front.begin;
-        front.below = structure.below[k - 1];
+        front.below = structure[k - 1];
         fronts_.push_back(std::move(front));
     }
     std::size_t values = 0;

@@ -18,17 +18,14 @@ using Block3 = std::array<std::array<double, 3>, 3>;
 /// rows.
 struct BlockMatrix {
     std::vector<Block3> own;  ///< diagonal blocks; only their lower halves are read
-    /// Off-diagonal blocks, one for each pair. A block is in the row of the pair's first entry and in the column of its
-    /// second entry. Its transpose at the mirrored position is not stored.
+    /// Off-diagonal blocks, one for each pair, in the row of its first and the column of its second entry. The
+    /// transposed blocks at the mirrored positions are not stored.
     std::vector<Block3> between;
 };
 
 /// Cholesky factorization L L^T of block matrices that all have the same pairs. An approximate minimum degree order
 /// keeps L sparse. Columns of L with the same nonzero rows are eliminated together as dense matrices: the multifrontal
-/// method. The order of all sums depends only on the pairs.
-///
-/// Source: J. W. H. Liu, "The multifrontal method for sparse matrix solution: theory and practice", SIAM Review 34
-/// (1992).
+/// method (J. W. H. Liu, SIAM Review 34, 1992). The order of all sums depends only on the pairs.
 class BlockCholesky {
 public:
     /// Two different rows of blocks. If a pair occurs more than once, its blocks are added.
@@ -69,8 +66,7 @@ private:
         [[nodiscard]] std::size_t columns() const { return std::size_t{3} * count; }
     };
 
-    struct Structure;
-    void make_fronts(const Structure& structure);
+    void make_fronts(const std::vector<std::vector<std::uint32_t>>& structure);
     void place_entries(std::span<const Pair> pairs);
     [[nodiscard]] static std::uint32_t index_in(const Front& front, std::uint32_t row);
     void assemble(const Front& front, const BlockMatrix& matrix);

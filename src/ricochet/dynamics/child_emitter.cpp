@@ -45,8 +45,7 @@ std::vector<double> shares_of(double mass, const std::vector<double>& weights) {
     const double unit = std::ldexp(1.0, exponent - std::numeric_limits<double>::digits);
     // The smallest share, in units, is rounded down. The mass then suffices even if all shares have this size.
     const double least = std::max(1.0, std::floor(kSmallestMass / unit));
-    // If the smallest share is more than one unit, every share starts with it. Only the remaining mass is then divided
-    // in proportion to the weights.
+    // If the smallest share is more than one unit, every share starts with it, and only the rest is divided by weights.
     const double kept = least > 1.0 ? least : 0.0;
     const double shared = mass / unit - kept * static_cast<double>(weights.size());
     double sum = 0.0;
@@ -78,8 +77,7 @@ LifeBirths births_in_life(const Emitter& emitter, const Particle& parent, double
     LifeBirths births;
     if (!(rate > 0.0)) return births;
     const auto time_of = [&](double ordinal) { return parent.birth_time + (ordinal + 0.5) / rate; };
-    // The ordinal of the first birth at or after a time is estimated, then corrected for rounding. The computed times
-    // of the births decide.
+    // The ordinal of the first birth at or after a time is estimated, then corrected for rounding.
     const double last = std::min(kMostChildren, static_cast<double>(emitter.description().limit));
     const auto first_from = [&](double time) {
         double ordinal = std::clamp(std::floor((time - parent.birth_time) * rate - 0.5), 0.0, last);

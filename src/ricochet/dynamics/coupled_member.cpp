@@ -9,7 +9,7 @@ namespace ricochet {
 namespace {
 
 /// Springs per unit of parallel work.
-constexpr std::size_t kBlock = 64;
+constexpr std::size_t kCoupledMemberBlock = 64;
 
 /// A node of a quadrature rule on [0, 1].
 struct Node {
@@ -37,8 +37,7 @@ const FlownPiece& piece_at(std::span<const FlownPiece> pieces, double time) {
     return *(next - 1);
 }
 
-/// Returns the state after `s` seconds on a path. The path is followed for `duration` seconds and ends with the
-/// velocity `arrival`.
+/// Returns the state after `s` seconds on a path of `duration` seconds that ends with the velocity `arrival`.
 PhaseState state_along(const Path& path, double s, double duration, const Vec3& arrival) {
     if (duration == 0.0) return {path.position(0.0), arrival};
     s = std::clamp(s, 0.0, duration);
@@ -115,8 +114,7 @@ void PlanDeviations::record_at_start(std::size_t member, const Vec3& velocity_ch
 
 void PlanDeviations::correct(const ParticleSystem& system, const std::vector<Flight>& plans,
                              const std::vector<std::uint8_t>& moves, std::vector<Vec3>& velocities) const {
-    const auto left = [](const Entry& entry) { return entry.keeps_start || !entry.flown.empty(); };
-    if (std::none_of(entries_.begin(), entries_.end(), left)) return;
+    if (std::none_of(entries_.begin(), entries_.end(), [](const Entry& entry) { return entry.has_left(); })) return;
     const std::vector<Vec3> given = momentum_changes(system, plans);
     const std::vector<Vec3> mutual = mutual_changes(system, plans);
     for (std::size_t k = 0; k < velocities.size(); ++k) {
@@ -131,11 +129,10 @@ void PlanDeviations::correct(const ParticleSystem& system, const std::vector<Fli
 }
 
 /// Returns the velocity changes that forces between members cause, in m/s, for each member. The list is empty if there
-/// are no such forces. Forces are evaluated at the ends of the paths, with each member displaced by its deviation from
-/// plan. If the forces depend on positions only, they act for half of the step, as in velocity Verlet. A deviation in
-/// position grows from the bounce to the end of the step. Twice its mean is therefore at most its final value. A
-/// deviation in velocity has its full size from the bounce on. If the forces depend on velocities, the mean deviation
-/// therefore acts for the whole step.
+/// are no such forces. If the forces depend on positions only, they act for half of the step, as in velocity Verlet: a
+/// deviation in position grows from the bounce on, so twice its mean is at most its final value. A deviation in
+/// velocity has its full size from the bounce on. If the forces depend on velocities, they therefore act for the whole
+/// step.
 std::vector<Vec3> PlanDeviations::mutual_changes(const ParticleSystem& system, const std::vector<Flight>& plans) const {
     const double duration = plans.front().path.duration;
     const double weight = (system.has_mutual_damping() ? 1.0 : 0.5) * duration;
@@ -172,8 +169,8 @@ PhaseState PlanDeviations::state_of(std::size_t member, const FlownPiece& piece,
 }
 
 /// Returns the integrals of a member's deviation from plan over the step, in m s for the position and in m for the
-/// velocity. If its forces keep their start values, the integrals are those of a member that stays in its start state.
-/// Only half of that deviation counts, because the plan already contains the mean of both forces.
+/// velocity. If its forces keep their start values, it counts as staying in its start state for half of the step,
+/// because the plan already contains the mean of both forces.
 PhaseState PlanDeviations::summed_deviation(std::size_t member, const Flight& plan) const {
     const FlownPiece planned = piece_of(plan);
     if (entries_[member].keeps_start) {
@@ -191,8 +188,7 @@ PhaseState PlanDeviations::summed_deviation(std::size_t member, const Flight& pl
     return sum;
 }
 
-/// Returns the momentum change that springs cause for each member, in N s. Threads compute the impulses of single
-/// springs. The impulses are added in the order of the springs.
+/// Returns the momentum change that springs cause for each member, in N s, added in the order of the springs.
 std::vector<Vec3> PlanDeviations::momentum_changes(const ParticleSystem& system,
                                                    const std::vector<Flight>& plans) const {
     std::vector<Vec3> sums(system.size());
@@ -201,7 +197,7 @@ std::vector<Vec3> PlanDeviations::momentum_changes(const ParticleSystem& system,
         if (has_left(bond.first) || has_left(bond.second)) changed.push_back(bond);
     }
     std::vector<Vec3> impulses(changed.size());
-    parallel_for_blocks(changed.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for_blocks(changed.size(), kCoupledMemberBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) impulses[k] = impulse_change(system, changed[k], plans);
     });
     for (std::size_t k = 0; k < changed.size(); ++k) {

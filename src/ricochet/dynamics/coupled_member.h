@@ -21,9 +21,8 @@ struct FlownPiece {
     Vec3 arrival;           ///< velocity at the end, in m/s
     bool is_free = false;   ///< true in free flight, false in contact
 
-    /// Returns the state at a time, in s, within the piece. The velocity is the path's derivative plus a correction
-    /// that grows with the square of the time. At the end it reaches `arrival`, which is more accurate than the path's
-    /// derivative.
+    /// Returns the state at a time, in s, within the piece. The velocity is the path's derivative plus a quadratic
+    /// correction, so that it ends with `arrival`, which is more accurate than the derivative.
     [[nodiscard]] PhaseState at(double time) const;
 };
 
@@ -37,15 +36,14 @@ struct MutualPull {
     double begin = 0.0;  ///< start time of the step, in s
 };
 
-/// Acceleration of a member by its springs in a step. The acceleration is constant, or is computed from the member's
-/// current state and the states of the other members on their planned flights.
+/// Acceleration of a member by its springs in a step.
 class CoupledMember final : public Coupling {
 public:
     CoupledMember() = default;
     /// Uses a constant acceleration, in m/s^2.
     explicit CoupledMember(const Vec3& constant_acceleration) : constant_acceleration_(constant_acceleration) {}
-    /// Computes the acceleration from `plans`, the planned flights of all members. Both references must outlive the
-    /// object.
+    /// Computes the acceleration from the member's current state and `plans`, the planned flights of all members. Both
+    /// references must outlive the object.
     CoupledMember(const ParticleSystem& system, const std::vector<Flight>& plans, std::size_t member,
                   const MutualPull& mutual = {})
         : system_(&system), plans_(&plans), member_(member), mutual_(mutual) {}
@@ -62,41 +60,33 @@ private:
 };
 
 /// Members that have left the plan of a step by an impact or in contact, and the resulting velocity corrections at the
-/// end of the step.
+/// end of the step. Positions are not corrected, because they are the ends of certified segments.
 ///
-/// In the plan, the two ends of a spring receive opposite impulses along the planned paths. If an end flies another
-/// path, the spring's impulse changes. The change is the integral of the force along the flown paths minus its integral
-/// along the planned paths. The two ends receive this change with opposite signs, so momentum is conserved to rounding.
-/// In this way the bounce of one end acts on the other end. The effect is of third order in the step. The same formula
-/// applies to ends that fly, slide or rest. Positions are not corrected, because they are the ends of certified
-/// segments.
+/// If an end of a spring leaves its planned path, the spring's impulse changes by the integral of the force along the
+/// flown paths minus that along the planned paths. Both ends receive this change with opposite signs, so momentum is
+/// conserved to rounding. The effect is of third order in the step.
 ///
-/// Forces between members that cannot be split into pairs are corrected together. They are evaluated in the planned end
-/// state, and again with each departed member displaced in proportion to its mean deviation from plan. The difference
-/// is applied to all members. The correction conserves momentum if the forces conserve it. It is exact to first order
-/// in the deviations, so its error is also of third order.
+/// Forces between members that cannot be split into pairs are evaluated in the planned end state, and again with each
+/// departed member displaced in proportion to its mean deviation from plan. The difference is applied to all members.
+/// It conserves momentum if the forces do, and its error is of third order.
 ///
-/// If contacts balanced a member's forces at the start of the step, its forces keep their start values. The reactions
-/// on other members keep their start values too. Otherwise the forces between two members that roll on each other would
-/// turn with the pair, but the contact loads would not. This mismatch would brake the pair. The error is of first order
-/// in the step.
+/// If contacts balanced a member's forces at the start of the step, its forces and their reactions keep their start
+/// values. Otherwise the forces between two members that roll on each other would turn with the pair, but the contact
+/// loads would not, which would brake the pair. The error is of first order in the step.
 class PlanDeviations {
 public:
     /// Clears all records. members: number of members. kind: method that made the plan.
     void reset(std::size_t members, IntegratorKind kind);
-    /// Records the path that a member has flown instead of its plan. velocity_change: velocity change by surfaces on
-    /// that path, in m/s. Several threads may call this function for different members.
+    /// Records the path that a member has flown instead of its plan. velocity_change: by surfaces on that path, in m/s.
+    /// Several threads may call this function for different members.
     void record(std::size_t member, std::span<const FlownPiece> flown, const Vec3& velocity_change);
     /// Records a member whose forces keep their values from the start of the step. velocity_change: as in record().
     void record_at_start(std::size_t member, const Vec3& velocity_change);
-    /// Corrects the end velocities of the members, in m/s, for all recorded deviations. moves: nonzero for members that
-    /// forces can move. Other members keep their velocities.
+    /// Corrects the end velocities of the members, in m/s. moves: nonzero for members that forces can move.
     void correct(const ParticleSystem& system, const std::vector<Flight>& plans, const std::vector<std::uint8_t>& moves,
                  std::vector<Vec3>& velocities) const;
     /// Returns true if the member has a record that differs from the plan.
-    [[nodiscard]] bool has_left(std::size_t member) const {
-        return entries_[member].keeps_start || !entries_[member].flown.empty();
-    }
+    [[nodiscard]] bool has_left(std::size_t member) const { return entries_[member].has_left(); }
 
 private:
     [[nodiscard]] std::vector<Vec3> momentum_changes(const ParticleSystem& system,
@@ -115,6 +105,8 @@ private:
         std::vector<FlownPiece> flown;  // empty if the member followed its plan
         Vec3 velocity_change;           // velocity change by surfaces, m/s
         bool keeps_start = false;       // the forces keep their values from the start of the step
+
+        [[nodiscard]] bool has_left() const { return keeps_start || !flown.empty(); }
     };
     std::vector<Entry> entries_;  // one per member
     IntegratorKind kind_ = IntegratorKind::ballistic;

@@ -273,29 +273,20 @@ void DrivenBody::follow(const BodyPath& path, const Wrench& load, const Wrench& 
 }
 
 void DrivenBody::take(const Wrench& wrench) {
-    switch (description_.joint) {
-        case JointKind::free:
-            velocity_ += wrench.impulse / description_.mass;
-            angular_momentum_ += wrench.moment;
-            break;
-        case JointKind::slider:
-        case JointKind::hinge:
-            rate_ += along_joint(wrench) / inertia_;
-            break;
+    if (description_.joint == JointKind::free) {
+        velocity_ += wrench.impulse / description_.mass;
+        angular_momentum_ += wrench.moment;
+    } else {
+        rate_ += along_joint(wrench) / inertia_;
     }
 }
 
 Mobility DrivenBody::mobility() const {
-    const Vec3& axis = description_.axis;
-    switch (description_.joint) {
-        case JointKind::hinge:
-            return {{}, (1.0 / inertia_) * outer_product(axis), {}};
-        case JointKind::slider:
-            return {(1.0 / inertia_) * outer_product(axis), {}, {}};
-        case JointKind::free:
-            break;
+    if (description_.joint == JointKind::free) {
+        return {diagonal_matrix(1.0 / description_.mass), inverse_inertia_, description_.center};
     }
-    return {diagonal_matrix(1.0 / description_.mass), inverse_inertia_, description_.center};
+    const SymmetricMatrix along = (1.0 / inertia_) * outer_product(description_.axis);
+    return description_.joint == JointKind::hinge ? Mobility{{}, along, {}} : Mobility{along, {}, {}};
 }
 
 double DrivenBody::quadratic_energy(const Wrench& wrench) const {
@@ -307,15 +298,8 @@ Vec3 DrivenBody::velocity_change(const Wrench& wrench, const Vec3& where) const 
 }
 
 Vec3 DrivenBody::velocity() const {
-    switch (description_.joint) {
-        case JointKind::free:
-            return velocity_;
-        case JointKind::slider:
-            return rate_ * axis_;
-        case JointKind::hinge:
-            break;
-    }
-    return rate_ * cross(axis_, center_ - pivot_);
+    if (description_.joint == JointKind::free) return velocity_;
+    return description_.joint == JointKind::slider ? rate_ * axis_ : rate_ * cross(axis_, center_ - pivot_);
 }
 
 Vec3 DrivenBody::angular_velocity() const {

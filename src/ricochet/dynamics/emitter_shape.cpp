@@ -175,6 +175,36 @@ bool has_interior(const MeshInterior& inside) {
     return false;
 }
 
+constexpr int kSegments = 256;
+
+bool is_left(const Point2& a, const Point2& b) { return a.u != b.u ? a.u < b.u : a.v < b.v; }
+
+// Appends the upper or lower half of the hull. Method: A. M. Andrew, "Another efficient algorithm for convex hulls in
+// two dimensions", Information Processing Letters 9(5), 1979.
+template <class Iterator>
+void append_half_hull(Iterator begin, Iterator end, std::vector<Point2>& hull) {
+    const std::size_t first = hull.size();
+    for (; begin != end; ++begin) {
+        while (hull.size() >= first + 2 && orient2d(hull[hull.size() - 2], hull.back(), *begin) <= 0) hull.pop_back();
+        hull.push_back(*begin);
+    }
+    if (!hull.empty()) hull.pop_back();
+}
+
+double hull_area(std::vector<Point2> points) {
+    std::sort(points.begin(), points.end(), is_left);
+    std::vector<Point2> hull;
+    append_half_hull(points.begin(), points.end(), hull);
+    append_half_hull(points.rbegin(), points.rend(), hull);
+    double twice = 0.0;
+    for (std::size_t k = 0; k < hull.size(); ++k) {
+        const Point2& a = hull[k];
+        const Point2& b = hull[(k + 1) % hull.size()];
+        twice += a.u * b.v - b.u * a.v;
+    }
+    return 0.5 * std::fabs(twice);
+}
+
 }  // namespace
 
 ShapeSampler::ShapeSampler(const EmitterShape& shape) : shape_(shape) {
@@ -283,40 +313,6 @@ Box3 bounds(const EmitterShape& shape) {
     }
     return box;
 }
-
-namespace {
-
-constexpr int kSegments = 256;
-
-bool is_left(const Point2& a, const Point2& b) { return a.u != b.u ? a.u < b.u : a.v < b.v; }
-
-// Appends the upper or lower half of the hull. Method: A. M. Andrew, "Another efficient algorithm for convex hulls in
-// two dimensions", Information Processing Letters 9(5), 1979.
-template <class Iterator>
-void append_half_hull(Iterator begin, Iterator end, std::vector<Point2>& hull) {
-    const std::size_t first = hull.size();
-    for (; begin != end; ++begin) {
-        while (hull.size() >= first + 2 && orient2d(hull[hull.size() - 2], hull.back(), *begin) <= 0) hull.pop_back();
-        hull.push_back(*begin);
-    }
-    if (!hull.empty()) hull.pop_back();
-}
-
-double hull_area(std::vector<Point2> points) {
-    std::sort(points.begin(), points.end(), is_left);
-    std::vector<Point2> hull;
-    append_half_hull(points.begin(), points.end(), hull);
-    append_half_hull(points.rbegin(), points.rend(), hull);
-    double twice = 0.0;
-    for (std::size_t k = 0; k < hull.size(); ++k) {
-        const Point2& a = hull[k];
-        const Point2& b = hull[(k + 1) % hull.size()];
-        twice += a.u * b.v - b.u * a.v;
-    }
-    return 0.5 * std::fabs(twice);
-}
-
-}  // namespace
 
 double screen_area(const EmitterShape& shape, const ReferenceCamera& camera) {
     require(is_position(camera.position) && is_position(camera.target) && is_direction(camera.target - camera.position),

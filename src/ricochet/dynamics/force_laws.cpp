@@ -15,6 +15,10 @@ namespace ricochet {
 
 namespace {
 
+using detail::require_finite;
+using detail::require_not_negative;
+using detail::require_positive;
+
 class PointGravity final : public Force {
 public:
     explicit PointGravity(std::vector<Attractor> attractors) : attractors_(std::move(attractors)) {}
@@ -47,19 +51,6 @@ public:
 private:
     std::vector<Attractor> attractors_;
 };
-
-}  // namespace
-
-std::unique_ptr<Force> make_point_gravity(std::vector<Attractor> attractors) {
-    for (const Attractor& attractor : attractors) {
-        detail::require_finite(attractor.position, "point gravity: the position", "m");
-        detail::require_finite(attractor.strength, "point gravity: the strength", "m^3/s^2");
-        detail::require_not_negative(attractor.softening, "point gravity: the softening length", "m");
-    }
-    return std::make_unique<PointGravity>(std::move(attractors));
-}
-
-namespace {
 
 // Returns x^exponent for x > 0. Integer exponents are the common case and use multiplication.
 double power(double x, double exponent) {
@@ -103,23 +94,6 @@ private:
     RadialForceSettings settings_;
 };
 
-}  // namespace
-
-std::unique_ptr<Force> make_radial_force(const RadialForceSettings& settings) {
-    detail::require_finite(settings.center, "radial force: the centre", "m");
-    detail::require_finite(settings.strength, "radial force: the strength", "N");
-    detail::require_finite(settings.exponent, "radial force: the exponent", "");
-    detail::require_not_negative(settings.softening, "radial force: the softening length", "m");
-    detail::require_positive(settings.reference, "radial force: the reference distance", "m");
-    if (std::fabs(settings.exponent) > kLargestRadialExponent) {
-        throw InputError(fmt::format("radial force: the exponent must be {} to {}, found {}", -kLargestRadialExponent,
-                                     kLargestRadialExponent, settings.exponent));
-    }
-    return std::make_unique<RadialForce>(settings);
-}
-
-namespace {
-
 class Anchor final : public Force {
 public:
     explicit Anchor(AnchorSettings settings) : settings_(std::move(settings)) {}
@@ -150,19 +124,6 @@ private:
     AnchorSettings settings_;  // particles are sorted
 };
 
-}  // namespace
-
-std::unique_ptr<Force> make_anchor(AnchorSettings settings) {
-    detail::require_finite(settings.position, "anchor: the position", "m");
-    detail::require_not_negative(settings.stiffness, "anchor: the stiffness", "N/m");
-    detail::require_not_negative(settings.rest_length, "anchor: the rest length", "m");
-    detail::require_not_negative(settings.damping, "anchor: the damping", "kg/s");
-    std::sort(settings.particles.begin(), settings.particles.end());
-    return std::make_unique<Anchor>(std::move(settings));
-}
-
-namespace {
-
 class LorentzForce final : public Force {
 public:
     explicit LorentzForce(const LorentzSettings& settings) : settings_(settings) {}
@@ -183,17 +144,6 @@ private:
 
     LorentzSettings settings_;
 };
-
-}  // namespace
-
-std::unique_ptr<Force> make_lorentz_force(const LorentzSettings& settings) {
-    detail::require_finite(settings.charge, "Lorentz force: the charge", "C");
-    detail::require_finite(settings.electric, "Lorentz force: the electric field", "V/m");
-    detail::require_finite(settings.magnetic, "Lorentz force: the magnetic field", "T");
-    return std::make_unique<LorentzForce>(settings);
-}
-
-namespace {
 
 class Buoyancy final : public Force {
 public:
@@ -234,22 +184,6 @@ private:
     Vec3 gravity_;
 };
 
-}  // namespace
-
-std::unique_ptr<Force> make_thermal_buoyancy(double ambient_temperature, const Vec3& gravity) {
-    detail::require_positive(ambient_temperature, "thermal buoyancy: the ambient temperature", "K");
-    detail::require_finite(gravity, "thermal buoyancy: the gravity", "m/s^2");
-    return std::make_unique<ThermalBuoyancy>(ambient_temperature, gravity);
-}
-
-std::unique_ptr<Force> make_buoyancy(double fluid_density, const Vec3& gravity) {
-    detail::require_not_negative(fluid_density, "buoyancy: the fluid's density", "kg/m^3");
-    detail::require_finite(gravity, "buoyancy: the gravity", "m/s^2");
-    return std::make_unique<Buoyancy>(fluid_density, gravity);
-}
-
-namespace {
-
 class FieldForce final : public Force {
 public:
     FieldForce(FlowPointer field, FieldMeaning meaning) : field_(std::move(field)), meaning_(meaning) {}
@@ -265,32 +199,6 @@ private:
     FlowPointer field_;
     FieldMeaning meaning_;
 };
-
-}  // namespace
-
-std::unique_ptr<Force> make_field_force(FlowPointer field, FieldMeaning meaning) {
-    if (!field) throw InputError("field force: found a null pointer, expected a field");
-    if (meaning != FieldMeaning::acceleration && meaning != FieldMeaning::force) {
-        throw InputError("field force: expected accelerations or forces as the field's meaning");
-    }
-    return std::make_unique<FieldForce>(std::move(field), meaning);
-}
-
-std::unique_ptr<Force> make_swirl(const Vec3& point, const Vec3& axis, double acceleration, double core_radius) {
-    detail::require_finite(point, "swirl: the point on the axis", "m");
-    detail::require_finite(acceleration, "swirl: the acceleration", "m/s^2");
-    detail::require_positive(core_radius, "swirl: the core radius", "m");
-    // The field is a Rankine vortex whose speed at the edge of its core equals the acceleration.
-    const double circulation = 2.0 * std::numbers::pi * core_radius * acceleration;
-    return make_field_force(
-        make_vortex({point, detail::unit_direction(axis, "swirl: the axis"), circulation, core_radius}),
-        FieldMeaning::acceleration);
-}
-
-namespace {
-
-using detail::require_not_negative;
-using detail::require_positive;
 
 /// Physical constants of the drag of spheres.
 constexpr double kNewtonReynolds = 1000.0;  // Reynolds number from which the coefficient is constant
@@ -367,6 +275,75 @@ std::unique_ptr<Force> drag_of(const Law& law, FlowPointer flow) {
 }
 
 }  // namespace
+
+std::unique_ptr<Force> make_point_gravity(std::vector<Attractor> attractors) {
+    for (const Attractor& attractor : attractors) {
+        require_finite(attractor.position, "point gravity: the position", "m");
+        require_finite(attractor.strength, "point gravity: the strength", "m^3/s^2");
+        require_not_negative(attractor.softening, "point gravity: the softening length", "m");
+    }
+    return std::make_unique<PointGravity>(std::move(attractors));
+}
+
+std::unique_ptr<Force> make_radial_force(const RadialForceSettings& settings) {
+    require_finite(settings.center, "radial force: the centre", "m");
+    require_finite(settings.strength, "radial force: the strength", "N");
+    require_finite(settings.exponent, "radial force: the exponent", "");
+    require_not_negative(settings.softening, "radial force: the softening length", "m");
+    require_positive(settings.reference, "radial force: the reference distance", "m");
+    if (std::fabs(settings.exponent) > kLargestRadialExponent) {
+        throw InputError(fmt::format("radial force: the exponent must be {} to {}, found {}", -kLargestRadialExponent,
+                                     kLargestRadialExponent, settings.exponent));
+    }
+    return std::make_unique<RadialForce>(settings);
+}
+
+std::unique_ptr<Force> make_anchor(AnchorSettings settings) {
+    require_finite(settings.position, "anchor: the position", "m");
+    require_not_negative(settings.stiffness, "anchor: the stiffness", "N/m");
+    require_not_negative(settings.rest_length, "anchor: the rest length", "m");
+    require_not_negative(settings.damping, "anchor: the damping", "kg/s");
+    std::sort(settings.particles.begin(), settings.particles.end());
+    return std::make_unique<Anchor>(std::move(settings));
+}
+
+std::unique_ptr<Force> make_lorentz_force(const LorentzSettings& settings) {
+    require_finite(settings.charge, "Lorentz force: the charge", "C");
+    require_finite(settings.electric, "Lorentz force: the electric field", "V/m");
+    require_finite(settings.magnetic, "Lorentz force: the magnetic field", "T");
+    return std::make_unique<LorentzForce>(settings);
+}
+
+std::unique_ptr<Force> make_thermal_buoyancy(double ambient_temperature, const Vec3& gravity) {
+    require_positive(ambient_temperature, "thermal buoyancy: the ambient temperature", "K");
+    require_finite(gravity, "thermal buoyancy: the gravity", "m/s^2");
+    return std::make_unique<ThermalBuoyancy>(ambient_temperature, gravity);
+}
+
+std::unique_ptr<Force> make_buoyancy(double fluid_density, const Vec3& gravity) {
+    require_not_negative(fluid_density, "buoyancy: the fluid's density", "kg/m^3");
+    require_finite(gravity, "buoyancy: the gravity", "m/s^2");
+    return std::make_unique<Buoyancy>(fluid_density, gravity);
+}
+
+std::unique_ptr<Force> make_field_force(FlowPointer field, FieldMeaning meaning) {
+    if (!field) throw InputError("field force: found a null pointer, expected a field");
+    if (meaning != FieldMeaning::acceleration && meaning != FieldMeaning::force) {
+        throw InputError("field force: expected accelerations or forces as the field's meaning");
+    }
+    return std::make_unique<FieldForce>(std::move(field), meaning);
+}
+
+std::unique_ptr<Force> make_swirl(const Vec3& point, const Vec3& axis, double acceleration, double core_radius) {
+    require_finite(point, "swirl: the point on the axis", "m");
+    require_finite(acceleration, "swirl: the acceleration", "m/s^2");
+    require_positive(core_radius, "swirl: the core radius", "m");
+    // The field is a Rankine vortex whose speed at the edge of its core equals the acceleration.
+    const double circulation = 2.0 * std::numbers::pi * core_radius * acceleration;
+    return make_field_force(
+        make_vortex({point, detail::unit_direction(axis, "swirl: the axis"), circulation, core_radius}),
+        FieldMeaning::acceleration);
+}
 
 bool is_drag_law(const Force& force) { return dynamic_cast<const AnyDrag*>(&force) != nullptr; }
 

@@ -77,6 +77,38 @@ private:
     std::unique_ptr<Force> force_;
 };
 
+ForceInput whole(ForceInput input) {
+    input.radius = std::exchange(input.whole_radius, 0.0);
+    return input;
+}
+
+/// Returns true if a force in this state must be finite. Integrators may try states that are out of range.
+bool is_in_range(const ForceInput& input) {
+    return is_finite(input.position) && is_finite(input.velocity) && max_abs(input.position) <= kLargestJudged &&
+           max_abs(input.velocity) <= kLargestJudged;
+}
+
+void refuse_if_not_finite(const std::vector<std::unique_ptr<Force>>& forces, const ForceInput& input) {
+    for (std::size_t k = 0; k < forces.size() && is_in_range(input); ++k) {
+        const std::optional<EnergyLaw> law = energy_law_of(*forces[k]);
+        if (law && law->varies) continue;  // a valid force of this kind can overflow, for example next to its centre
+        const Vec3 a = forces[k]->acceleration(input);
+        if (is_finite(a)) continue;
+        const Vec3& x = input.position;
+        throw RunError(
+            fmt::format("forces[{}]: found the acceleration [{}, {}, {}] m/s^2 of particle {} at [{:.6g}, {:.6g}, "
+                        "{:.6g}] m and {:.6g} s, expected finite numbers",
+                        k, a.x, a.y, a.z, input.id, x.x, x.y, x.z, input.time));
+    }
+}
+
+std::vector<std::unique_ptr<Force>> without_null(std::vector<std::unique_ptr<Force>> forces) {
+    for (std::size_t k = 0; k < forces.size(); ++k) {
+        if (!forces[k]) throw InputError(fmt::format("force {}: found a null pointer, expected a force", k));
+    }
+    return forces;
+}
+
 }  // namespace
 
 std::unique_ptr<Force> make_force_on(std::vector<std::uint64_t> particles, std::unique_ptr<Force> force) {
@@ -109,43 +141,6 @@ std::unique_ptr<Force> make_acceleration(std::function<Vec3(const ForceInput&)> 
     if (!acceleration) throw InputError("acceleration: an empty function cannot be called");
     return std::make_unique<CallableForce>(std::move(acceleration), Returns::acceleration, std::move(traits));
 }
-
-namespace {
-
-ForceInput whole(ForceInput input) {
-    input.radius = std::exchange(input.whole_radius, 0.0);
-    return input;
-}
-
-/// Returns true if a force in this state must be finite. Integrators may try states that are out of range. Such a state
-/// is an error only if the particle reaches it.
-bool is_in_range(const ForceInput& input) {
-    return is_finite(input.position) && is_finite(input.velocity) && max_abs(input.position) <= kLargestJudged &&
-           max_abs(input.velocity) <= kLargestJudged;
-}
-
-void refuse_if_not_finite(const std::vector<std::unique_ptr<Force>>& forces, const ForceInput& input) {
-    for (std::size_t k = 0; k < forces.size() && is_in_range(input); ++k) {
-        const std::optional<EnergyLaw> law = energy_law_of(*forces[k]);
-        if (law && law->varies) continue;  // a valid force of this kind can overflow, for example next to its centre
-        const Vec3 a = forces[k]->acceleration(input);
-        if (is_finite(a)) continue;
-        const Vec3& x = input.position;
-        throw RunError(
-            fmt::format("forces[{}]: found the acceleration [{}, {}, {}] m/s^2 of particle {} at [{:.6g}, {:.6g}, "
-                        "{:.6g}] m and {:.6g} s, expected finite numbers",
-                        k, a.x, a.y, a.z, input.id, x.x, x.y, x.z, input.time));
-    }
-}
-
-std::vector<std::unique_ptr<Force>> without_null(std::vector<std::unique_ptr<Force>> forces) {
-    for (std::size_t k = 0; k < forces.size(); ++k) {
-        if (!forces[k]) throw InputError(fmt::format("force {}: found a null pointer, expected a force", k));
-    }
-    return forces;
-}
-
-}  // namespace
 
 ForceField::ForceField(std::vector<std::unique_ptr<Force>> forces, bool adds_coupling)
     : forces_(without_null(std::move(forces))),

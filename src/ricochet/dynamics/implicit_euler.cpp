@@ -9,9 +9,9 @@ namespace ricochet {
 
 namespace {
 
-/// Relative increments for finite differences of the velocity. kSpeedStep is relative to the speed and is the square
-/// root of the rounding of doubles. kPlaceStep is relative to the coordinates divided by the time step. With it, the
-/// increment still changes large coordinates. Local: the increments affect only the speed of convergence.
+/// Relative increments for finite differences of the velocity. kSpeedStep, the square root of the rounding of doubles,
+/// is relative to the speed. kPlaceStep is relative to the coordinates divided by the time step, so that the increment
+/// still changes large coordinates. Local: the increments affect only the speed of convergence.
 constexpr double kSpeedStep = 0x1p-26;
 constexpr double kPlaceStep = 0x1p-38;
 
@@ -33,8 +33,6 @@ Vec3 solved(const Columns3& m, const Vec3& right) {
 }
 
 }  // namespace
-
-bool is_converged(double correction, double largest_speed) { return correction <= kNewtonTolerance * largest_speed; }
 
 Columns3 acceleration_slope(const ForceField& forces, const ForceInput& state, const Vec3& v1, double h) {
     const double step = std::max({kSpeedStep * max_abs(v1), kSpeedStep * max_abs(state.velocity),
@@ -65,7 +63,7 @@ Vec3 implicit_euler_velocity(const ForceField& forces, const ForceInput& state, 
         const Vec3 correction = solved(slope, residual);
         v1 -= correction;
         const double speed = std::max({max_abs(v0), max_abs(v1), max_abs(gain)});
-        if (is_converged(max_abs(correction), speed) || !is_finite(v1)) break;
+        if (max_abs(correction) <= kNewtonTolerance * speed || !is_finite(v1)) break;
     }
     return v1;
 }

@@ -1,11 +1,11 @@
 /// \file
-/// Backward Euler step of one particle, and functions shared with the step of a system. Private to the integrators.
+/// Backward Euler step of one particle, and the derivative that the step of a system also needs. Private to the
+/// integrators.
 #pragma once
 
 #include <array>
 
 #include "ricochet/dynamics/forces.h"
-#include "ricochet/dynamics/system_integrator.h"
 
 namespace ricochet {
 
@@ -18,9 +18,5 @@ using Columns3 = std::array<Vec3, 3>;
 /// Returns the derivative of a(x0 + h v1, v1, t + h) with respect to v1, in 1/s, from forward differences. An error of
 /// the derivative can cost iterations, but does not reduce the accuracy of the solution.
 [[nodiscard]] Columns3 acceleration_slope(const ForceField& forces, const ForceInput& state, const Vec3& v1, double h);
-
-/// Returns true if a velocity correction is below the rounding of the largest speed. The caller includes the velocity
-/// change of the step in this speed.
-[[nodiscard]] bool is_converged(double correction, double largest_speed);
 
 }  // namespace ricochet

@@ -1,7 +1,6 @@
 #include "ricochet/dynamics/implicit_matrix.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 
 #include "ricochet/core/parallel.h"
@@ -11,7 +10,7 @@ namespace ricochet {
 namespace {
 
 /// Bonds or members per unit of parallel work.
-constexpr std::size_t kBlock = 256;
+constexpr std::size_t kImplicitMatrixBlock = 256;
 
 void add(Block3& sum, const Block3& block) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -43,10 +42,11 @@ public:
         BlockMatrix matrix;
         matrix.own.resize(state_.system.size());
         matrix.between.resize(bonds.size());
-        parallel_for_blocks(matrix.own.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) matrix.own[i] = own_block(i);
-        });
-        parallel_for_blocks(bonds.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        parallel_for_blocks(matrix.own.size(), kImplicitMatrixBlock,
+                            [&](std::size_t, std::size_t begin, std::size_t end) {
+                                for (std::size_t i = begin; i < end; ++i) matrix.own[i] = own_block(i);
+                            });
+        parallel_for_blocks(bonds.size(), kImplicitMatrixBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k) matrix.between[k] = spring_block(bonds[k]);
         });
         for (std::size_t k = 0; k < bonds.size(); ++k) add_bond(matrix, k);
@@ -59,9 +59,8 @@ private:
     }
 
     /// Returns the diagonal block of a member without springs: the mass plus the contribution of the forces on single
-    /// particles. If the matrix must be symmetric, only the symmetric part of this contribution is used. The block of a
-    /// pinned member is the unit matrix. Along constrained directions the block is the mass, because the residual is
-    /// zero there.
+    /// particles, or its symmetric part. The block of a pinned member is the unit matrix. Along constrained directions
+    /// it is the mass, because the residual is zero there.
     [[nodiscard]] Block3 own_block(std::size_t i) const {
         Block3 block{};
         const bool is_pinned = state_.system.is_pinned(i);
@@ -93,8 +92,8 @@ private:
         return block;
     }
 
-    /// Adds the derivative of friction in the unconstrained directions. If the slip is slow, friction opposes any
-    /// change of it. Otherwise friction has constant magnitude, so only a change of the slip's direction changes it.
+    /// Adds the derivative of friction in the unconstrained directions. If the slip is not slow, friction has constant
+    /// magnitude, so only a change of the slip's direction changes it.
     void add_friction(Block3& block, std::size_t i) const {
         const SupportConstraints& supports = state_.supports[i];
         const Vec3 slip = supports.slip_of(state_.v1[i]);
@@ -110,8 +109,8 @@ private:
         }
     }
 
-    /// Adds a spring's block to the diagonal blocks of its ends, and replaces the entry in `between` by the
-    /// off-diagonal block. On entry, this entry is the spring's block.
+    /// Adds the spring's block in `between` to the diagonal blocks of its ends, and replaces it by the off-diagonal
+    /// block.
     void add_bond(BlockMatrix& matrix, std::size_t k) const {
         const ParticleSystem::Bond& bond = state_.system.bonds()[k];
         Block3& between = matrix.between[k];

@@ -7,7 +7,6 @@
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/block_cholesky.h"
-#include "ricochet/dynamics/implicit_euler.h"
 #include "ricochet/dynamics/implicit_matrix.h"
 
 namespace ricochet {
@@ -16,47 +15,28 @@ namespace {
 using Vector = Eigen::VectorXd;
 
 /// Members per unit of parallel work.
-constexpr std::size_t kBlock = 256;
+constexpr std::size_t kImplicitSystemBlock = 256;
 
-/// Largest number of halvings of a correction that does not reduce the energy. Local: a limit of this search. Its
-/// result is checked.
-constexpr int kMostCuts = 12;
-
-/// Largest number of Newton iterations. After that the last iterate is used. Local: a limit of this search. Its result
-/// is checked.
-constexpr int kMostSteps = 80;
-
-/// Smallest value of MatrixKind::compression_stiffness that is tried before 0. Local: a step of this search.
-constexpr double kLeastCompressionStiffness = 0.2;
-
-/// Correction, relative to the largest speed, below which Newton's method is expected to converge without a decrease of
-/// the energy. Local, because kNewtonTolerance decides when the equations are solved.
-constexpr double kNear = 1e-4;
-
-/// Smallest accepted energy decrease of a correction, as a fraction of the decrease predicted from the slope (L.
-/// Armijo, 1966). Local: a rule of this search, see kNewtonTolerance.
+// Rules of the search. Local, because kNewtonTolerance decides when the equations are solved. kLeastDescent: smallest
+// accepted decrease of the energy, relative to that predicted from the slope (L. Armijo, 1966). kNear: correction,
+// relative to the largest speed, below which convergence without a decrease of the energy is expected.
 constexpr double kLeastDescent = 1e-4;
-
-/// Rounding of a sum of energies, relative to the sum. Local: an error bound of the sum in this file.
-constexpr double kEnergyRounding = 1e-13;
-
-/// Iterative refinement of a correction towards that of the exact matrix, with the factorized symmetric matrix. The
-/// values are the largest number of iterations, the final residual relative to the first, and the factor by which each
-/// iteration must reduce the residual. Local, because kNewtonTolerance decides when the equations are solved.
+constexpr double kNear = 1e-4;
+constexpr double kLeastCompressionStiffness = 0.2;  // least value of MatrixKind that is tried before 0
+constexpr double kRefined = 1e-3;                   // final residual of the refinement, relative to the first
+constexpr double kRefinesBy = 0.7;                  // factor by which each refinement must reduce the residual
 constexpr int kMostRefinements = 20;
-constexpr double kRefined = 1e-3;
-constexpr double kRefinesBy = 0.7;
+constexpr int kMostSteps = 80;  // Newton iterations; after that the last iterate is used
+constexpr int kMostCuts = 12;   // halvings of a correction that does not reduce the energy
 
-/// Rounding of a spring's stretch, relative to the coordinates of its ends. It includes the rounding of a few sums.
-/// Local: an error bound of the sums in this file.
-constexpr double kPositionRounding = 0x1p-49;
+// Local: error bounds of the sums in this file.
+constexpr double kEnergyRounding = 1e-13;      // rounding of a sum of energies, relative to the sum
+constexpr double kPositionRounding = 0x1p-49;  // rounding of a stretch, relative to the coordinates of the ends
 
 /// The equations m (v1 - v0) - h F(x0 + h v1, v1, t + h) = 0 of all members, and their solution. The force of a damper
 /// is proportional to the mean rate of change of its length over the step.
 class BackwardEuler {
 public:
-    /// guess: first iterate of the velocities. If it is empty, the velocities at the start of the step are the first
-    /// iterate.
     BackwardEuler(const ParticleSystem& system, double h, std::span<const SupportConstraints> supports,
                   std::span<const Vec3> guess, const ImplicitOptions& options)
         : system_(system),
@@ -102,10 +82,10 @@ private:
 
     [[nodiscard]] bool is_supported(std::size_t i) const { return !supports_.empty() && supports_[i].count > 0; }
 
-    /// Solves the equations by Newton's method. The residual is the gradient of an energy. This energy is the sum of
-    /// the kinetic energy relative to the motion without springs, the spring energy, the dissipation, and the work of
-    /// forces. The matrices are positive definite, so every iteration reduces the energy. The method therefore reaches
-    /// a minimum from any start, and does not end at a saddle. Returns true if the method converged.
+    /// Solves the equations by Newton's method. Returns true if it converged. The residual is the gradient of an
+    /// energy: the kinetic energy relative to the motion without springs, the spring energy, the dissipation, and the
+    /// work of forces. The matrices are positive definite, so every iteration reduces the energy, and the method
+    /// reaches a minimum from any start.
     bool solve() {
         for (int iteration = 0; iteration < kMostSteps; ++iteration) {
             if (is_solved()) return true;
@@ -133,8 +113,8 @@ private:
         return true;
     }
 
-    /// Returns the solution with the exact matrix. The function refines iteratively with the factorized symmetric
-    /// matrix. If this does not converge, it solves the exact matrix directly.
+    /// Returns the solution with the exact matrix, by iterative refinement with the factorized symmetric matrix. If
+    /// this does not converge, the exact matrix is factorized.
     Vector exact_correction() const {
         const BlockMatrix exact = matrix({1.0, false});
         Vector correction = solved(right_);
@@ -169,9 +149,8 @@ private:
         }
     }
 
-    /// Applies the correction, and halves it until the energy decreases enough. Near the solution a decrease of the
-    /// residual is also accepted, because energies differ only by rounding there. Returns false if no tried length
-    /// decreases either.
+    /// Applies the correction, and halves it until the energy decreases enough. Returns false if it never does. Near
+    /// the solution a decrease of the residual suffices, because energies differ only by rounding there.
     bool follow(const Vector& correction, bool is_near) {
         const std::vector<Vec3> v_before = v1_;
         const std::vector<Vec3> own_before = own_;
@@ -213,7 +192,7 @@ private:
     void evaluate() {
         const std::size_t count = v1_.size();
         own_.resize(count);
-        parallel_for_blocks(count, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        parallel_for_blocks(count, kImplicitSystemBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 x1_[i] = system_.positions()[i] + h_ * v1_[i];
                 own_[i] = system_.is_pinned(i)
@@ -246,8 +225,7 @@ private:
         forces_[bond.second] -= pull;
     }
 
-    /// Returns true if the residual is below the rounding error of the spring forces. It follows from the rounding of
-    /// the positions and the spring stiffness.
+    /// Returns true if the residual is below the rounding error of the spring forces.
     [[nodiscard]] bool is_solved() const {
         if (right_.size() == 0) return true;
         double stiffest = 0.0;  // in N

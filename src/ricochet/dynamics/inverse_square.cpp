@@ -205,10 +205,7 @@ void SourceTree::field(double opening, std::span<Vec3> field, TreeWork* work) co
             for (std::size_t first = leaf.begin; first < leaf.end; first += kLanes) {
                 const std::size_t count = std::min<std::size_t>(kLanes, leaf.end - first);
                 FieldLanes lanes(positions.subspan(first, count));
-                for (const std::uint32_t n : found.groups) {
-                    const Node& node = nodes_[n];
-                    lanes.add_group({node.center, node.weight, node.first, node.second}, softening);
-                }
+                for (const std::uint32_t n : found.groups) lanes.add_group(nodes_[n], softening);
                 for (const std::uint32_t n : found.leaves) {
                     const std::size_t size = nodes_[n].end - nodes_[n].begin;
                     lanes.add_points(positions.subspan(nodes_[n].begin, size), weights.subspan(nodes_[n].begin, size),
@@ -238,9 +235,7 @@ void SourceTree::potential(double opening, std::span<double> potential) const {
             for (std::size_t i = leaf.begin; i < leaf.end; ++i) {
                 double sum = 0.0;
                 for (const std::uint32_t n : found.groups) {
-                    const Node& node = nodes_[n];
-                    sum +=
-                        group_potential({node.center, node.weight, node.first, node.second}, positions[i], softening);
+                    sum += group_potential(nodes_[n], positions[i], softening);
                 }
                 const auto add = [&](std::size_t from, std::size_t to) {
                     sum += point_potential(positions[i], positions.subspan(from, to - from),

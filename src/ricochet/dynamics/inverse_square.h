@@ -26,11 +26,18 @@ struct Sources {
     double softening = 0.0;  ///< in m
 };
 
-/// Computes the field g from all pairs. The sum of each point is accumulated in the order of the points, so the bits do
-/// not depend on threads.
+/// Compute the field g or the potential f from all pairs. The sum of each point is accumulated in the order of the
+/// points, so the bits do not depend on threads.
 void direct_field(const Sources& sources, std::span<Vec3> field);
-/// Computes the potential f from all pairs, in the same order.
 void direct_potential(const Sources& sources, std::span<double> potential);
+
+/// Moments of a group of points about its centre.
+struct GroupMoments {
+    Vec3 center;             ///< mean position of the points, weighted by absolute weights, in m
+    double weight = 0.0;     ///< zeroth moment
+    Vec3 first;              ///< first moment
+    SymmetricMatrix second;  ///< second moment
+};
 
 /// Numbers of interactions that a sum by a tree has evaluated.
 struct TreeWork {
@@ -38,28 +45,22 @@ struct TreeWork {
     std::uint64_t with_groups = 0;
 };
 
-/// The sources as an octree. Nearby points form groups. The effect of a distant group is computed from its weight and
-/// its first and second moments about its centre. The shape of the tree depends only on the positions and their order.
-/// Source of the method: J. Barnes, P. Hut, Nature 324, 1986. The opening criterion uses the farthest point of a group:
-/// J. K. Salmon, M. S. Warren, J. Comput. Phys. 111, 1994.
+/// The sources as an octree, whose shape depends only on the positions and their order. The effect of a distant group
+/// is computed from its moments. Source of the method: J. Barnes, P. Hut, Nature 324, 1986. The opening criterion uses
+/// the farthest point of a group: J. K. Salmon, M. S. Warren, J. Comput. Phys. 111, 1994.
 class SourceTree {
 public:
     /// The data behind the spans of `sources` must outlive the tree.
     explicit SourceTree(const Sources& sources);
 
-    /// Computes the field g. opening: see InverseSquareSettings. Adds the numbers of interactions to `work` unless it
-    /// is null.
+    /// Computes the field g, and adds the numbers of interactions to `work`. opening: see InverseSquareSettings.
     void field(double opening, std::span<Vec3> field, TreeWork* work = nullptr) const;
     /// Computes the potential f.
     void potential(double opening, std::span<double> potential) const;
 
 private:
-    struct Node {
-        Vec3 center;              // mean position of the points, weighted by absolute weights, in m
+    struct Node : GroupMoments {
         double reach = 0.0;       // upper bound of the points' distances from the centre, in m
-        double weight = 0.0;      // zeroth moment
-        Vec3 first;               // first moment about the centre
-        SymmetricMatrix second;   // second moment about the centre
         Box3 box;                 // bounds of the points
         double magnitude = 0.0;   // sum of absolute weights
         std::uint32_t begin = 0;  // range of the node's points in sorted order

@@ -1,9 +1,6 @@
 // Gravity and electrostatic forces between all particles.
 #include <fmt/format.h>
 
-#include <cmath>
-#include <utility>
-
 #include "ricochet/core/checks.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"

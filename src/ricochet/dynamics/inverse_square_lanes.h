@@ -8,22 +8,14 @@
 #include <cstddef>
 #include <span>
 
-#include "ricochet/core/symmetric_matrix.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/core/vec3.h"
+#include "ricochet/dynamics/inverse_square.h"
 
 namespace ricochet {
 
 /// Number of points whose sums are computed in parallel lanes.
 inline constexpr std::size_t kLanes = 8;
-
-/// Moments of a group of points about its centre.
-struct GroupMoments {
-    Vec3 center;
-    double weight;
-    Vec3 first;
-    SymmetricMatrix second;
-};
 
 /// Fields at up to kLanes points.
 class FieldLanes {

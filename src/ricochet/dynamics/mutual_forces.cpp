@@ -35,8 +35,7 @@ std::vector<double> column_of(const Particles& particles, const std::string& nam
 
 bool is_in_range(const Vec3& v) { return is_finite(v) && max_abs(v) <= kLargestJudged; }
 
-/// Throws RunError for a non-finite acceleration. Integrators may try states that are out of range. Such a state is an
-/// error only if the particles reach it.
+/// Throws RunError for a non-finite acceleration, except in states out of range, which integrators may try.
 void refuse_if_not_finite(const ParticlesForce& force, std::size_t number, const ParticlesView& view,
                           std::span<const Vec3> accelerations) {
     const auto wrong =

@@ -66,9 +66,8 @@ private:
         }
     }
 
-    /// Returns the range of coarse cells to search along one axis for a box whose lower corner is in the fine cell
-    /// `at`. All boxes that may overlap it have their lower corners in this range. shift: number of levels between both
-    /// cell sizes.
+    /// Returns the range of coarse cells along one axis with the lower corners of all boxes that may overlap a box
+    /// whose lower corner is in the fine cell `at`. shift: number of levels between both cell sizes.
     [[nodiscard]] static Range coarse(std::uint32_t at, unsigned shift) {
         const std::uint32_t own = at >> shift;
         return {own == 0 ? 0 : own - 1, (at + 1) >> shift};
@@ -77,8 +76,8 @@ private:
         return static_cast<std::uint32_t>(grid_.sorted_[k].key & mask_);
     }
 
-    /// Writes the pair at the end of the list, and increments the count only if the boxes overlap. The code has no
-    /// branch, because overlaps are random and a branch would often be mispredicted.
+    /// Writes the pair at the end of the list, and increments the count only if the boxes overlap: a branch would often
+    /// be mispredicted.
     void test(std::size_t a, std::size_t b) {
         if (count_ == found_.size()) found_.resize(std::max(kNeighbourGridBlock, 2 * count_));
         const std::uint32_t i = grid_.sorted_[a].index;
@@ -278,8 +277,8 @@ void NeighbourGrid::collect(std::vector<std::vector<NeighbourPair>>& found) {
                         });
 }
 
-/// Writes the pairs of all blocks in ascending order. For each box there is a range of the pairs in which this box is
-/// the first. The order within a range depends on the threads, so each range is sorted at the end.
+/// Writes the pairs of all blocks in ascending order. The order of the pairs with the same first box depends on the
+/// threads, so it is sorted at the end.
 void NeighbourGrid::arrange(const std::vector<std::vector<NeighbourPair>>& found, std::size_t boxes) {
     ends_.assign(boxes + 1, 0);
     const auto for_all_pairs = [&](auto&& visit) {

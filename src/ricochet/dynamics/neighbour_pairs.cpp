@@ -9,25 +9,15 @@
 namespace ricochet {
 namespace {
 
-/// If more than 1 / kFew of the boxes have changed, update() searches all boxes again. Local, because only the cost
-/// depends on this value.
-constexpr std::size_t kFew = 8;
-
-/// If more than 1 / kFewLeft of the boxes have left their kept boxes, find() searches all boxes again. A separate
-/// search for one box costs as much as several boxes in a search of all boxes.
-constexpr std::size_t kFewLeft = 32;
-
 /// Enlargement of a kept box on each side, relative to its size. In a settling pile whose spheres move by 1e-3 of their
 /// size per step, a twentieth of the spheres leave their kept boxes in ten steps. With twice the enlargement, a tenth
 /// more pairs must be tested. Local, because only the cost depends on this value.
 constexpr double kLarger = 0.02;
-
-/// Smallest number of boxes for which the cache saves time.
-constexpr std::size_t kMany = 512;
-
+constexpr std::size_t kFew = 8;       // update() searches all boxes again if more than 1 / kFew have changed
+constexpr std::size_t kFewLeft = 32;  // find() does so if more than 1 / kFewLeft have left their kept boxes
+constexpr std::size_t kMany = 512;    // smallest number of boxes for which the cache saves time
 /// Number of searches without enlargement after a search whose enlarged boxes were not reused.
 constexpr int kUnenlargedSearches = 16;
-
 /// Boxes or pairs per unit of parallel work.
 constexpr std::size_t kNeighbourPairsBlock = 8192;
 
@@ -164,8 +154,7 @@ const std::vector<NeighbourPair>& NeighbourPairs::update(std::span<const Box3> b
     return pairs_;
 }
 
-/// Adds the pairs of the boxes `some`, which are in later_. Their old pairs must have been removed. some: ascending
-/// indices.
+/// Adds the pairs of the boxes `some`, which are in later_. Their old pairs must have been removed.
 void NeighbourPairs::add_pairs_of(std::span<const std::uint32_t> some) {
     std::vector<Box3> later_boxes;
     for (const std::uint32_t k : later_) later_boxes.push_back(boxes_[k]);

@@ -17,14 +17,6 @@ namespace {
 /// Pairs and particles per unit of parallel work.
 constexpr std::size_t kPairForcesBlock = 1024;
 
-/// Pair law: force and potential of two particles within the cutoff.
-template <class Law>
-concept PairLawLike = requires(const Law& law, const PairState& pair) {
-    { law.force(pair) } -> std::convertible_to<Vec3>;
-    { law.potential(pair) } -> std::convertible_to<double>;
-    { law.cutoff() } -> std::convertible_to<double>;
-};
-
 /// Returns a cube for every particle. The cubes of two particles overlap if the particles are within the cutoff.
 /// Particles with non-finite positions get empty cubes.
 std::vector<Box3> boxes_around(const ParticlesView& particles, double cutoff, bool between_surfaces) {
@@ -44,7 +36,8 @@ std::vector<Box3> boxes_around(const ParticlesView& particles, double cutoff, bo
     return boxes;
 }
 
-template <PairLawLike Law>
+/// Force by a law with the functions force(pair), potential(pair) and cutoff().
+template <class Law>
 class PairForce final : public ParticlesForce {
 public:
     PairForce(Law law, bool between_surfaces, bool has_potential, bool depends_on_velocity)

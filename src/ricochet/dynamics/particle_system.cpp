@@ -105,13 +105,9 @@ void ParticleSystem::set_state(std::span<const double> state) {
 }
 
 void ParticleSystem::derivative(double time, std::span<double> result) const {
-    require_length(result.size(), dimension());
-    std::vector<Vec3> acceleration(size());
-    accelerations(time, position_, velocity_, acceleration);
-    for (std::size_t i = 0; i < size(); ++i) {
-        write(result, 6 * i, is_pinned(i) ? Vec3{} : velocity_[i]);
-        write(result, 6 * i + 3, acceleration[i]);
-    }
+    std::vector<double> state(dimension());
+    get_state(state);
+    derivative(time, state, result);
 }
 
 void ParticleSystem::derivative(double time, std::span<const double> state, std::span<double> result) const {

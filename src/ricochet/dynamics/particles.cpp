@@ -28,6 +28,23 @@ void require(bool condition, const AttributeDescription& column, const char* wha
     if (!condition) throw InputError(fmt::format("attribute '{}': {}", column.name, what));
 }
 
+// Orders particles by id with a table that maps ids to indices. If ids are dense, this is faster than sorting. Returns
+// false, without changes, if ids are sparse or not unique.
+bool put_in_order_by_table(const std::vector<std::uint64_t>& id, std::vector<std::uint32_t>& order) {
+    constexpr std::uint64_t kMostPlacesAnEntry = 8;
+    constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
+    const auto [lowest, highest] = std::minmax_element(id.begin(), id.end());
+    if ((*highest - *lowest) / kMostPlacesAnEntry >= id.size()) return false;
+    std::vector<std::uint32_t> owner(*highest - *lowest + 1, kNobody);
+    for (std::uint32_t i = 0; i < id.size(); ++i) {
+        std::uint32_t& entry = owner[id[i] - *lowest];
+        if (entry != kNobody) return false;
+        entry = i;
+    }
+    std::copy_if(owner.begin(), owner.end(), order.begin(), [](std::uint32_t i) { return i != kNobody; });
+    return true;
+}
+
 }  // namespace
 
 AttributeValue missing_attribute() { return {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}; }
@@ -120,27 +137,6 @@ std::vector<AttributeValue> AttributeTable::at(std::size_t i) const {
     for (std::size_t k = 0; k < columns_.size(); ++k) values.push_back(value(k, i));
     return values;
 }
-
-namespace {
-
-// Orders particles by id with a table that maps ids to indices. If ids are dense, this is faster than sorting. Returns
-// false, without changes, if ids are sparse or not unique.
-bool put_in_order_by_table(const std::vector<std::uint64_t>& id, std::vector<std::uint32_t>& order) {
-    constexpr std::uint64_t kMostPlacesAnEntry = 8;
-    constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
-    const auto [lowest, highest] = std::minmax_element(id.begin(), id.end());
-    if ((*highest - *lowest) / kMostPlacesAnEntry >= id.size()) return false;
-    std::vector<std::uint32_t> owner(*highest - *lowest + 1, kNobody);
-    for (std::uint32_t i = 0; i < id.size(); ++i) {
-        std::uint32_t& entry = owner[id[i] - *lowest];
-        if (entry != kNobody) return false;
-        entry = i;
-    }
-    std::copy_if(owner.begin(), owner.end(), order.begin(), [](std::uint32_t i) { return i != kNobody; });
-    return true;
-}
-
-}  // namespace
 
 void Particles::append(const Particle& particle) {
     id.push_back(particle.id);

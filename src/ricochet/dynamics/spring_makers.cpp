@@ -32,51 +32,6 @@ double solve_sinh_ratio(double ratio) {
     return 0.5 * (found.low + found.high);
 }
 
-}  // namespace
-
-// Let s be the arc length from the lowest point of a catenary with the parameter a. The horizontal coordinate is a
-// asinh(s / a), and the vertical coordinate is sqrt(a^2 + s^2). At the ends of the rope, asinh(s / a) is middle - x and
-// middle + x. With the length L, sinh(x) / x = sqrt(L^2 - rise^2) / across, tanh(middle) = rise / L, and a = across /
-// (2 x).
-std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length_of_rope, const Vec3& up, std::size_t count) {
-    const Vec3 chord = to - from;
-    const double rise = dot(chord, up);
-    const Vec3 level = chord - up * rise;
-    const double across = length(level);
-    const bool is_taut = length_of_rope <= length(chord) * (1.0 + kTautRope);
-    const bool is_folded = across <= kFoldedRope * length_of_rope;
-    const double depth = 0.5 * (length_of_rope - rise);  // depth of a folded rope, in m
-    double x = 0.0;
-    double middle = 0.0;
-    double a = 0.0;
-    if (!is_taut && !is_folded) {
-        x = solve_sinh_ratio(std::sqrt((length_of_rope - rise) * (length_of_rope + rise)) / across);
-        middle = 0.5 * portable_log((length_of_rope + rise) / (length_of_rope - rise));
-        a = across / (2.0 * x);
-    }
-    const double first = a * sinh_of(middle - x);
-    const auto height_at = [&](double s) { return std::sqrt(a * a + s * s); };
-    std::vector<Vec3> positions;
-    for (std::size_t i = 0; i < count; ++i) {
-        const double part = static_cast<double>(i) / static_cast<double>(count - 1);
-        const double s = part * length_of_rope;
-        if (is_taut) {
-            positions.push_back(from + chord * part);
-        } else if (is_folded) {
-            positions.push_back(from + level * part + up * (s < depth ? -s : s - 2.0 * depth));
-        } else {
-            const double aside = a * (asinh_of((first + s) / a) - (middle - x));
-            const double height = height_at(first + s) - height_at(first);
-            positions.push_back(from + level * (aside / across) + up * height);
-        }
-    }
-    positions.front() = from;
-    positions.back() = to;
-    return positions;
-}
-
-namespace {
-
 void check(const RopeSettings& rope) {
     require_settings(rope, kRopeEndsTable, "rope: ");
     require_settings(rope, kRopeLengthTable, "rope: ");
@@ -144,6 +99,47 @@ std::vector<SpringFace> cloth_faces(const TriangleMesh& mesh, const std::vector<
 }
 
 }  // namespace
+
+// Let s be the arc length from the lowest point of a catenary with the parameter a. The horizontal coordinate is a
+// asinh(s / a), and the vertical coordinate is sqrt(a^2 + s^2). At the ends of the rope, asinh(s / a) is middle - x and
+// middle + x. With the length L, sinh(x) / x = sqrt(L^2 - rise^2) / across, tanh(middle) = rise / L, and a = across /
+// (2 x).
+std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length_of_rope, const Vec3& up, std::size_t count) {
+    const Vec3 chord = to - from;
+    const double rise = dot(chord, up);
+    const Vec3 level = chord - up * rise;
+    const double across = length(level);
+    const bool is_taut = length_of_rope <= length(chord) * (1.0 + kTautRope);
+    const bool is_folded = across <= kFoldedRope * length_of_rope;
+    const double depth = 0.5 * (length_of_rope - rise);  // depth of a folded rope, in m
+    double x = 0.0;
+    double middle = 0.0;
+    double a = 0.0;
+    if (!is_taut && !is_folded) {
+        x = solve_sinh_ratio(std::sqrt((length_of_rope - rise) * (length_of_rope + rise)) / across);
+        middle = 0.5 * portable_log((length_of_rope + rise) / (length_of_rope - rise));
+        a = across / (2.0 * x);
+    }
+    const double first = a * sinh_of(middle - x);
+    const auto height_at = [&](double s) { return std::sqrt(a * a + s * s); };
+    std::vector<Vec3> positions;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double part = static_cast<double>(i) / static_cast<double>(count - 1);
+        const double s = part * length_of_rope;
+        if (is_taut) {
+            positions.push_back(from + chord * part);
+        } else if (is_folded) {
+            positions.push_back(from + level * part + up * (s < depth ? -s : s - 2.0 * depth));
+        } else {
+            const double aside = a * (asinh_of((first + s) / a) - (middle - x));
+            const double height = height_at(first + s) - height_at(first);
+            positions.push_back(from + level * (aside / across) + up * height);
+        }
+    }
+    positions.front() = from;
+    positions.back() = to;
+    return positions;
+}
 
 void SpringBody::append(const SpringBody& body) {
     const std::uint64_t first_id = particles.size();

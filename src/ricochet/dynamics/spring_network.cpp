@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -19,7 +18,7 @@ namespace ricochet {
 namespace {
 
 /// Number of springs per block of parallel work in the sum of the energy.
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kSpringNetworkBlock = 1024;
 
 void check(const Spring& spring, std::size_t number) {
     const std::string name = fmt::format("spring {}: ", number);
@@ -36,24 +35,16 @@ void check(const Spring& spring, std::size_t number) {
 /// Map from ids to indices.
 class Indices {
 public:
-    explicit Indices(std::span<const std::uint64_t> ids) : ids_(ids) {
-        if (std::is_sorted(ids.begin(), ids.end())) {
-            require_once(std::adjacent_find(ids.begin(), ids.end()) == ids.end());
-            return;
-        }
-        order_.resize(ids.size());
+    explicit Indices(std::span<const std::uint64_t> ids) : ids_(ids), order_(ids.size()) {
         std::iota(order_.begin(), order_.end(), std::uint32_t{0});
-        std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) { return ids[a] < ids[b]; });
+        if (!std::is_sorted(ids.begin(), ids.end())) {
+            std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) { return ids[a] < ids[b]; });
+        }
         const auto twice = std::adjacent_find(order_.begin(), order_.end(),
                                               [&](std::uint32_t a, std::uint32_t b) { return ids[a] == ids[b]; });
-        require_once(twice == order_.end());
+        if (twice != order_.end()) throw InputError("particles of springs: found an id twice, expected each once");
     }
     [[nodiscard]] std::optional<std::uint32_t> of(std::uint64_t id) const {
-        if (order_.empty()) {
-            const auto found = std::lower_bound(ids_.begin(), ids_.end(), id);
-            if (found == ids_.end() || *found != id) return std::nullopt;
-            return static_cast<std::uint32_t>(found - ids_.begin());
-        }
         const auto found = std::lower_bound(order_.begin(), order_.end(), id,
                                             [&](std::uint32_t i, std::uint64_t wanted) { return ids_[i] < wanted; });
         if (found == order_.end() || ids_[*found] != id) return std::nullopt;
@@ -61,12 +52,8 @@ public:
     }
 
 private:
-    static void require_once(bool condition) {
-        if (!condition) throw InputError("particles of springs: found an id twice, expected each once");
-    }
-
     std::span<const std::uint64_t> ids_;
-    std::vector<std::uint32_t> order_;  // indices in ascending order of ids; empty if the ids are already sorted
+    std::vector<std::uint32_t> order_;  // indices in ascending order of ids
 };
 
 }  // namespace
@@ -159,7 +146,7 @@ Vec3 SpringNetwork::force_on(std::uint32_t i, std::span<const Vec3> position, st
 
 double SpringNetwork::potential_energy(std::span<const Vec3> position) const {
     require_entries(position);
-    return ordered_sum(bonds_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    return ordered_sum(bonds_.size(), kSpringNetworkBlock, [&](std::size_t begin, std::size_t end) {
         double sum = 0.0;
         for (std::size_t k = begin; k < end; ++k) {
             const Bond& bond = bonds_[k];
@@ -188,53 +175,30 @@ std::size_t SpringNetwork::break_overstretched(std::span<const Vec3> position) {
     return count;
 }
 
-namespace {
-
-/// Largest values over all particles of the summed stiffness, and of the summed damping, of a particle's springs
-/// divided by its mass.
-struct Rates {
-    double stiffness = 0.0;  // in 1/s^2
-    double damping = 0.0;    // in 1/s
-};
-
-Rates largest_rates(std::span<const Spring> springs, const std::vector<Particle>& particles) {
-    std::vector<Rates> sums(particles.size());
-    for (const Spring& spring : springs) {
-        for (const std::uint64_t end : {spring.first, spring.second}) {
-            require_index(end, particles.size(), "end of a spring");
-            if (particles[end].pinned) continue;
-            sums[end].stiffness += spring.stiffness / particles[end].mass;
-            sums[end].damping += spring.damping / particles[end].mass;
-        }
-    }
-    Rates largest;
-    for (const Rates& sum : sums) {
-        largest.stiffness = std::max(largest.stiffness, sum.stiffness);
-        largest.damping = std::max(largest.damping, sum.damping);
-    }
-    return largest;
-}
-
-/// Returns the longest step for forward_euler, in s. The damper of every spring must remove the energy that a step adds
-/// to the spring.
-double damper_bound(std::span<const Spring> springs) {
-    double bound = std::numeric_limits<double>::infinity();
-    for (const Spring& spring : springs) {
-        if (spring.stiffness > 0.0) bound = std::min(bound, spring.damping / spring.stiffness);
-    }
-    return bound;
-}
-
-}  // namespace
-
 double longest_stable_step(IntegratorKind kind, std::span<const Spring> springs,
                            const std::vector<Particle>& particles) {
     return longest_stable_step(kind, rates_of(springs, particles));
 }
 
 OscillationRates rates_of(std::span<const Spring> springs, const std::vector<Particle>& particles) {
-    const Rates rates = largest_rates(springs, particles);
-    return {2.0 * rates.stiffness, 2.0 * rates.damping, damper_bound(springs)};
+    OscillationRates largest;
+    std::vector<OscillationRates> sums(particles.size());  // for every particle, over its springs
+    for (const Spring& spring : springs) {
+        if (spring.stiffness > 0.0) {
+            largest.least_damper = std::min(largest.least_damper, spring.damping / spring.stiffness);
+        }
+        for (const std::uint64_t end : {spring.first, spring.second}) {
+            require_index(end, particles.size(), "end of a spring");
+            if (particles[end].pinned) continue;
+            sums[end].omega_squared += spring.stiffness / particles[end].mass;
+            sums[end].gamma += spring.damping / particles[end].mass;
+        }
+    }
+    for (const OscillationRates& sum : sums) {
+        largest.omega_squared = std::max(largest.omega_squared, 2.0 * sum.omega_squared);
+        largest.gamma = std::max(largest.gamma, 2.0 * sum.gamma);
+    }
+    return largest;
 }
 
 }  // namespace ricochet

@@ -17,10 +17,9 @@ constexpr double kAnyStep = std::numeric_limits<double>::infinity();
 constexpr double kReachOfMidpoint = 1.0;
 constexpr double kReachOfRk4 = 2.6;
 
-/// Increment of the velocity in finite differences, relative to the larger of the speed and kSlow. The increment is
-/// large, so that the jump of 0.4 % in Schiller and Naumann's coefficient does not cause a steep slope. For linear and
-/// quadratic drags, central differences are exact with any increment. Local: increments of numerical derivatives, which
-/// are used only for warnings.
+/// Increment of the velocity in finite differences, relative to the larger of the speed and kSlow. It is large, so that
+/// the jump of 0.4 % in Schiller and Naumann's coefficient does not cause a steep slope. For linear and quadratic
+/// drags, any increment is exact. Local: increments of numerical derivatives, which are used only for warnings.
 constexpr double kDifference = 1e-2;
 constexpr double kSlow = 1e-3;  ///< in m/s
 

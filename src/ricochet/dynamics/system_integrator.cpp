@@ -4,7 +4,6 @@
 #include <array>
 
 #include "ricochet/dynamics/dormand_prince.h"
-#include "ricochet/dynamics/implicit_euler.h"
 
 namespace ricochet {
 namespace {

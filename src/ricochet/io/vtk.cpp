@@ -67,12 +67,9 @@ public:
     void text(std::string_view line) { header_ += line; }
 
     void block(std::string_view type, std::string_view name, int components, std::string_view bytes) {
-        header_ +=
-            fmt::format(R"(<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="appended" offset="{}"/>)",
-                        type, escaped(name), components, offset_);
-        header_ += '\n';
-        blocks_.push_back(bytes);
-        offset_ += sizeof(std::uint64_t) + bytes.size();
+        add(fmt::format(R"(<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="appended" offset="{}"/>)",
+                        type, escaped(name), components, offset_),
+            bytes);
     }
 
     void array(const VtkArray& array) {
@@ -85,12 +82,10 @@ public:
     void texts(const VtkTexts& list) {
         std::string& bytes = own_bytes_.emplace_back();
         for (const std::string& value : list.values) (bytes += value.substr(0, value.find('\0'))) += '\0';
-        header_ += fmt::format(
-            R"(<Array type="String" Name="{}" NumberOfComponents="1" NumberOfTuples="{}" format="appended" offset="{}"/>)",
-            escaped(list.name), list.values.size(), offset_);
-        header_ += '\n';
-        blocks_.push_back(bytes);
-        offset_ += sizeof(std::uint64_t) + bytes.size();
+        add(fmt::format(
+                R"(<Array type="String" Name="{}" NumberOfComponents="1" NumberOfTuples="{}" format="appended" offset="{}"/>)",
+                escaped(list.name), list.values.size(), offset_),
+            bytes);
     }
 
     std::uint64_t write(AtomicFile& file) const {
@@ -106,6 +101,13 @@ public:
     }
 
 private:
+    void add(std::string_view tag, std::string_view bytes) {
+        header_ += tag;
+        header_ += '\n';
+        blocks_.push_back(bytes);
+        offset_ += sizeof(std::uint64_t) + bytes.size();
+    }
+
     std::string header_;
     std::deque<std::string> own_bytes_;  // bytes of text blocks, in a deque so that addresses stay valid
     std::vector<std::string_view> blocks_;
@@ -123,8 +125,6 @@ template <typename Index>
 struct CellLists {
     CellList<Index> verts, lines, polys;
 };
-
-using Cells = std::variant<CellLists<std::int32_t>, CellLists<std::int64_t>>;
 
 template <typename Index>
 CellList<Index> one_vertex_cell(std::size_t points) {
@@ -151,14 +151,6 @@ template <typename Index>
 CellLists<Index> cell_lists(const VtkPolyData& data) {
     return {one_vertex_cell<Index>(data.shows_points() ? data.points.size() : 0), cells_of<Index>(data.lines),
             cells_of<Index>(data.triangles)};
-}
-
-Cells make_cells(const VtkPolyData& data, VtkIndexWidth width) {
-    const std::size_t largest = std::max({data.points.size(), 2 * data.lines.size(), 3 * data.triangles.size()});
-    if (width == VtkIndexWidth::bits64 || largest > std::numeric_limits<std::int32_t>::max()) {
-        return cell_lists<std::int64_t>(data);
-    }
-    return cell_lists<std::int32_t>(data);
 }
 
 template <typename Index>
@@ -192,7 +184,8 @@ void lay_out_fields(Layout& layout, const VtkPolyData& data) {
     layout.text("</FieldData>\n");
 }
 
-Layout lay_out(const VtkPolyData& data, const Cells& cells) {
+template <typename Index>
+Layout lay_out(const VtkPolyData& data, const CellLists<Index>& cells) {
     Layout layout;
     layout.text(
         "<?xml version=\"1.0\"?>\n"
@@ -209,9 +202,15 @@ Layout lay_out(const VtkPolyData& data, const Cells& cells) {
     layout.text("</CellData>\n<Points>\n");
     layout.block("Float64", "Points", 3, bytes_of(data.points));
     layout.text("</Points>\n");
-    std::visit([&](const auto& lists) { lay_out_lists(layout, lists); }, cells);
+    lay_out_lists(layout, cells);
     layout.text("</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_");
     return layout;
+}
+
+template <class Entry>
+const Entry* find_named(const std::vector<Entry>& entries, std::string_view name) {
+    const auto found = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.name == name; });
+    return found == entries.end() ? nullptr : &*found;
 }
 
 void require_time(double time) {
@@ -236,6 +235,15 @@ void check(const VtkPolyData& data) {
     require_lengths(data.cell_arrays, data.cell_count());
 }
 
+template <typename Index>
+std::uint64_t write(const std::filesystem::path& path, const VtkPolyData& data) {
+    const CellLists<Index> cells = cell_lists<Index>(data);
+    AtomicFile file(path);
+    const std::uint64_t size = lay_out(data, cells).write(file);
+    file.commit();
+    return size;
+}
+
 }  // namespace
 
 std::size_t VtkArray::size() const {
@@ -244,11 +252,9 @@ std::size_t VtkArray::size() const {
 
 std::uint64_t write_vtp(const std::filesystem::path& path, const VtkPolyData& data, VtkIndexWidth width) {
     check(data);
-    const Cells cells = make_cells(data, width);
-    AtomicFile file(path);
-    const std::uint64_t size = lay_out(data, cells).write(file);
-    file.commit();
-    return size;
+    const std::size_t largest = std::max({data.points.size(), 2 * data.lines.size(), 3 * data.triangles.size()});
+    const bool is_wide = width == VtkIndexWidth::bits64 || largest > std::numeric_limits<std::int32_t>::max();
+    return is_wide ? write<std::int64_t>(path, data) : write<std::int32_t>(path, data);
 }
 
 std::string pvtp_text(const VtkPolyData& shape, const std::vector<std::string>& files) {
@@ -286,21 +292,17 @@ std::string pvd_text(const std::vector<PvdEntry>& entries) {
 }
 
 const VtkArray* find_array(const std::vector<VtkArray>& arrays, std::string_view name) {
-    const auto found =
-        std::find_if(arrays.begin(), arrays.end(), [&](const VtkArray& array) { return array.name == name; });
-    return found == arrays.end() ? nullptr : &*found;
+    return find_named(arrays, name);
 }
 
 const std::vector<double>* find_field(const VtkPolyData& data, std::string_view name) {
-    const auto found =
-        std::find_if(data.fields.begin(), data.fields.end(), [&](const VtkField& field) { return field.name == name; });
-    return found == data.fields.end() ? nullptr : &found->values;
+    const VtkField* found = find_named(data.fields, name);
+    return found == nullptr ? nullptr : &found->values;
 }
 
 const std::vector<std::string>* find_texts(const VtkPolyData& data, std::string_view name) {
-    const auto found =
-        std::find_if(data.texts.begin(), data.texts.end(), [&](const VtkTexts& texts) { return texts.name == name; });
-    return found == data.texts.end() ? nullptr : &found->values;
+    const VtkTexts* found = find_named(data.texts, name);
+    return found == nullptr ? nullptr : &found->values;
 }
 
 std::vector<double> scalar_values(const VtkArray& array) {

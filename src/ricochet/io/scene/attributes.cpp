@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "ricochet/core/printable.h"
@@ -19,9 +20,9 @@ struct Look {
 };
 constexpr Look kEmitterLooks[] = {
     {"color", kColorAttribute}, {"opacity", kOpacityAttribute}, {"particle_size", kSizeAttribute}};
+// Keys of explicit particles, and of curves over life.
 constexpr Look kParticleLooks[] = {
     {"color", kColorAttribute}, {"opacity", kOpacityAttribute}, {"size", kSizeAttribute}};
-constexpr Look kCurveLooks[] = {{"color", kColorAttribute}, {"opacity", kOpacityAttribute}, {"size", kSizeAttribute}};
 
 const ObjectSpec& life_curves_spec() {
     static const ObjectSpec spec = object<Unbound>(
@@ -32,8 +33,11 @@ const ObjectSpec& life_curves_spec() {
         {{"color", ValueType::object, "Factors of the colour, for red, green and blue.", &vector_curve_spec()},
          {"opacity", ValueType::object, "Factor of the opacity.", &number_curve_spec()},
          {"size", ValueType::object, "Factor of the drawn size.", &number_curve_spec()},
-         {"attributes", ValueType::table, "Factors of attributes with one component, by name.", &number_curve_spec()},
-         {"vector_attributes", ValueType::table, "Factors of attributes with three components, by name.",
+         {"attributes", ValueType::table,
+          "Curves of factors for attributes with one component. The keys are the names of the attributes.",
+          &number_curve_spec()},
+         {"vector_attributes", ValueType::table,
+          "Curves of factors for attributes with three components. The keys are the names of the attributes.",
           &vector_curve_spec()}});
     return spec;
 }
@@ -57,31 +61,26 @@ const AttributeDescription* declared(const SceneContext& context, const Simulati
     return nullptr;
 }
 
-void declare_look(SimulationSetup& setup, std::string_view column) {
-    if (find_declared(setup, column) == nullptr) setup.attributes.push_back(*looks_attribute(column));
-}
-
-void declare_used(const ObjectView& view, const Look& look, SimulationSetup& setup) {
-    if (view.has(look.key)) declare_look(setup, look.column);
-}
-
-std::optional<Vec3> three_numbers(const JsonNode& node) {
-    const JsonNode::Array* items = node.array();
-    if (items == nullptr || items->size() != 3) return std::nullopt;
-    Vec3 value;
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto number = (*items)[static_cast<std::size_t>(axis)].number();
-        if (!number) return std::nullopt;
-        value[axis] = *number;
+// Declares the attributes of the appearance keys that an object has.
+void declare_used(const ObjectView& view, std::span<const Look> looks, SimulationSetup& setup) {
+    for (const Look& look : looks) {
+        if (!view.has(look.key) || find_declared(setup, look.column) != nullptr) continue;
+        setup.attributes.push_back(*looks_attribute(look.column));
     }
-    return value;
 }
 
 // Returns the value of a node with the given number of components. Returns nothing if the node has another form.
 std::optional<Vec3> value_of(const JsonNode& node, int components) {
-    if (components == 3) return three_numbers(node);
-    if (const auto number = node.number()) return Vec3{*number, 0.0, 0.0};
-    return std::nullopt;
+    const bool is_vector = components == 3;
+    const JsonNode::Array* items = node.array();
+    if (is_vector && (items == nullptr || items->size() != 3)) return std::nullopt;
+    Vec3 value;
+    for (int axis = 0; axis < components; ++axis) {
+        const auto number = (is_vector ? (*items)[static_cast<std::size_t>(axis)] : node).number();
+        if (!number) return std::nullopt;
+        value[axis] = *number;
+    }
+    return value;
 }
 
 // Returns mean and spread of a node: a single value, or a pair [mean, spread] of values, as in value_of().
@@ -147,36 +146,33 @@ void build_declared(const SceneContext& context, const NamedObject& named, Simul
     setup.attributes.push_back(std::move(attribute));
 }
 
-/// Declares the material attribute if the scene has several materials for spheres.
-void declare_material(const SceneContext& context, SimulationSetup& setup) {
-    if (!setup.options.particle_contacts || setup.options.particle_contacts->materials.empty()) return;
-    if (find_declared(setup, kMaterialAttribute) != nullptr) {
+/// Declares an attribute that contains numbers of the named things. Reports a scene that declares it by itself.
+void declare_number(const SceneContext& context, SimulationSetup& setup, std::string_view name, const char* things) {
+    if (find_declared(setup, name) == nullptr) {
+        setup.attributes.push_back({std::string(name), 1, {}});
+    } else {
         context.error(
             context.root(), "attributes",
-            "declares \"material\", which is the number of one of particle_contacts' materials here, expected "
-            "another name");
-        return;
+            fmt::format("declares \"{}\", which is the number of one of {} here, expected another name", name, things));
     }
-    setup.attributes.push_back({std::string(kMaterialAttribute), 1, {}});
 }
 
-/// Declares the drawing attribute if an emitter has the key "drawing".
-void declare_drawing(const SceneContext& context, SimulationSetup& setup) {
+/// Declares the material attribute if the scene has several materials for spheres, and the drawing attribute if an
+/// emitter has the key "drawing".
+void declare_numbers(const SceneContext& context, SimulationSetup& setup) {
+    const auto& contacts = setup.options.particle_contacts;
+    if (contacts && !contacts->materials.empty()) {
+        declare_number(context, setup, kMaterialAttribute, "particle_contacts' materials");
+    }
     const std::vector<ObjectView> emitters = context.objects("emitters");
-    if (std::none_of(emitters.begin(), emitters.end(), [](const ObjectView& view) { return view.has("drawing"); })) {
-        return;
+    if (std::any_of(emitters.begin(), emitters.end(), [](const ObjectView& view) { return view.has("drawing"); })) {
+        declare_number(context, setup, kDrawingAttribute, "the emitters' drawings");
     }
-    if (find_declared(setup, kDrawingAttribute) != nullptr) {
-        context.error(
-            context.root(), "attributes",
-            "declares \"drawing\", which is the number of one of the emitters' drawings here, expected another "
-            "name");
-        return;
-    }
-    setup.attributes.push_back({std::string(kDrawingAttribute), 1, {}});
 }
 
-LifeCurve scalar_curve(const SceneContext& context, const ObjectView& view, std::string name, bool of_lifetime) {
+LifeCurve life_curve(const SceneContext& context, const ObjectView& view, std::string name, bool is_vector,
+                     bool of_lifetime) {
+    if (is_vector) return {std::move(name), vector_curve_of(view, context.diagnostics()), of_lifetime};
     const KeyedCurve<double> curve = number_curve_of(view, context.diagnostics());
     std::vector<CurveKey<Vec3>> keys;
     for (const CurveKey<double>& key : curve.keys()) keys.push_back({key.time, {key.value, key.value, key.value}});
@@ -194,10 +190,8 @@ void read_named_curves(const SceneContext& context, const SimulationSetup& setup
                 named.name_location, curve.path(),
                 fmt::format("the attribute has {} components, it belongs in \"{}\"", attribute->components,
                             components == 3 ? "attributes" : "vector_attributes"));
-        } else if (components == 3) {
-            emitter.curves.push_back({named.name, vector_curve_of(curve, context.diagnostics()), of_lifetime});
         } else {
-            emitter.curves.push_back(scalar_curve(context, curve, named.name, of_lifetime));
+            emitter.curves.push_back(life_curve(context, curve, named.name, components == 3, of_lifetime));
         }
     }
 }
@@ -210,14 +204,10 @@ void read_curves(const SceneContext& context, const SimulationSetup& setup, cons
     if (of_lifetime && !owner.has("lifetime")) {
         context.error(owner, key, "only goes together with the key \"lifetime\"; over_age needs none");
     }
-    if (view.has("color")) {
+    for (const Look& look : kParticleLooks) {
+        if (!view.has(look.key)) continue;
         emitter.curves.push_back(
-            {std::string(kColorAttribute), vector_curve_of(view.object("color"), context.diagnostics()), of_lifetime});
-    }
-    for (const std::string_view look : {kOpacityAttribute, kSizeAttribute}) {
-        if (view.has(look)) {
-            emitter.curves.push_back(scalar_curve(context, view.object(look), std::string(look), of_lifetime));
-        }
+            life_curve(context, view.object(look.key), std::string(look.column), look.key == "color", of_lifetime));
     }
     read_named_curves(context, setup, view, 1, of_lifetime, emitter);
     read_named_curves(context, setup, view, 3, of_lifetime, emitter);
@@ -254,56 +244,46 @@ const ObjectSpec& attribute_spec() {
     return spec;
 }
 
-std::vector<KeySpec> emitter_look_keys() {
-    const Fields<Unbound> fields = {
-        {"color", ValueType::vector_pair, kFraction, "",
-         "Red, green and blue, 0 to 1 (linear light). Values that spread beyond are clamped.",
-         Without{"[1, 1, 1] if other particles have colours; no column otherwise"}},
-        {"opacity", ValueType::pair, kFraction, "",
-         "Opacity from 0 (invisible) to 1 (covers everything behind). Values that spread beyond are clamped.",
-         Without{"1 if others have one; no column otherwise"}},
-        {"particle_size", ValueType::pair, kLengthOrZero, "m", "Drawn radius. Collisions use `particle_radius`.",
-         LowEnd{kNotNegative}, Without{"particle_radius"}},
-        {"attributes", ValueType::quantity_table, kCoordinate, "", "Values of the scene's `attributes`, by name.",
-         Without{"their defaults"}},
-        {"material", ValueType::text, "Material of the particles: a name in `particle_contacts.materials`.",
-         Without{"the parent's, else the first"}},
-        {"drawing", ValueType::object, "How its particles are drawn.", &drawing_spec(),
-         Without{"the parent's, else the one of `picture`"}},
-        {"over_life", ValueType::object, "Factors over the lifetime. Keys go from 0 (birth) to 1 (end of life).",
-         &life_curves_spec(), Without{"none"}},
-        {"over_age", ValueType::object, "Factors over the age in s.", &life_curves_spec(), Without{"none"}}};
-    return {fields.begin(), fields.end()};
+Fields<EmitterDescription> emitter_look_fields() {
+    return {{"color", ValueType::vector_pair, kFraction, "",
+             "Red, green and blue, 0 to 1 (linear light). Drawn values outside this range are clamped.",
+             Without{"[1, 1, 1] if other particles have colours; no column otherwise"}},
+            {"opacity", ValueType::pair, kFraction, "",
+             "Opacity from 0 (invisible) to 1 (covers everything behind). Drawn values outside this range are clamped.",
+             Without{"1 if others have one; no column otherwise"}},
+            {"particle_size", ValueType::pair, kLengthOrZero, "m", "Drawn radius. Collisions use `particle_radius`.",
+             LowEnd{kNotNegative}, Without{"particle_radius"}},
+            {"attributes", ValueType::quantity_table, kCoordinate, "", "Values of the scene's `attributes`, by name.",
+             Without{"their defaults"}},
+            {"material", ValueType::text, "Material of the particles: a name in `particle_contacts.materials`.",
+             Without{"the parent's, else the first"}},
+            {"drawing", ValueType::object, "How its particles are drawn.", &drawing_spec(),
+             Without{"the parent's, else the one of `picture`"}},
+            {"over_life", ValueType::object, "Factors over the lifetime. Keys go from 0 (birth) to 1 (end of life).",
+             &life_curves_spec(), Without{"none"}},
+            {"over_age", ValueType::object, "Factors over the age in s.", &life_curves_spec(), Without{"none"}}};
 }
 
-std::vector<KeySpec> particle_look_keys() {
-    const Fields<Unbound> fields = {
-        {"color", ValueType::vector, kFraction, "", "Red, green and blue, 0 to 1 (linear light).",
-         Without{"[1, 1, 1] if others have colours"}},
-        {"opacity", ValueType::number, kFraction, "", "Opacity from 0 (invisible) to 1 (covers everything behind).",
-         Without{"1 if others have one"}},
-        {"size", ValueType::number, kLengthOrZero, "m", "Drawn radius.", Without{"its radius"}},
-        {"attributes", ValueType::quantity_table, kCoordinate, "",
-         "Values of the scene's `attributes`, by name, without a spread.", Without{"their defaults"}},
-        {"material", ValueType::text, "Material of the particle: a name in `particle_contacts.materials`.",
-         Without{"the first"}}};
-    return {fields.begin(), fields.end()};
+Fields<Particle> particle_look_fields() {
+    return {{"color", ValueType::vector, kFraction, "", "Red, green and blue, 0 to 1 (linear light).",
+             Without{"[1, 1, 1] if others have colours"}},
+            {"opacity", ValueType::number, kFraction, "", "Opacity from 0 (invisible) to 1 (covers everything behind).",
+             Without{"1 if others have one"}},
+            {"size", ValueType::number, kLengthOrZero, "m", "Drawn radius.", Without{"its radius"}},
+            {"attributes", ValueType::quantity_table, kCoordinate, "",
+             "Values of the scene's `attributes`, by name, without a spread.", Without{"their defaults"}},
+            {"material", ValueType::text, "Material of the particle: a name in `particle_contacts.materials`.",
+             Without{"the first"}}};
 }
 
 void build_attributes(const SceneContext& context, SimulationSetup& setup) {
     for (const NamedObject& named : context.root().named_objects("attributes")) build_declared(context, named, setup);
-    declare_material(context, setup);
-    declare_drawing(context, setup);
+    declare_numbers(context, setup);
     for (const ObjectView& view : context.objects("emitters")) {
-        for (const Look& look : kEmitterLooks) declare_used(view, look, setup);
-        for (const char* const key : {"over_life", "over_age"}) {
-            if (!view.has(key)) continue;
-            for (const Look& look : kCurveLooks) declare_used(view.object(key), look, setup);
-        }
+        declare_used(view, kEmitterLooks, setup);
+        for (const char* const key : {"over_life", "over_age"}) declare_used(view.object(key), kParticleLooks, setup);
     }
-    for (const ObjectView& view : context.objects("particles")) {
-        for (const Look& look : kParticleLooks) declare_used(view, look, setup);
-    }
+    for (const ObjectView& view : context.objects("particles")) declare_used(view, kParticleLooks, setup);
 }
 
 void read_looks(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,

@@ -23,27 +23,10 @@ struct OutputKeys : OutputOptions {
     bool contacts = false;
 };
 
-const ObjectSpec& tolerance_spec() {
-    static const ObjectSpec spec = object("tolerance", "Largest error of one sub-step of an adaptive integrator.",
-                                          fields_of<ErrorTolerance>(kToleranceTable));
-    return spec;
-}
-
-const ObjectSpec& rollback_spec() {
-    static const ObjectSpec spec =
-        object("rollback", "Settings of the rollback response.", fields_of<RollbackSettings>(kRollbackTable));
-    return spec;
-}
-
-const ObjectSpec& project_spec() {
-    static const ObjectSpec spec =
-        object("project", "Settings of the project response.", fields_of<ProjectSettings>(kProjectTable));
-    return spec;
-}
-
-const ObjectSpec& penalty_spec() {
-    static const ObjectSpec spec =
-        object("penalty", "Settings of the penalty response.", fields_of<PenaltySettings>(kPenaltyTable));
+// Returns the table of an object whose keys are the settings of a struct.
+template <class Settings>
+const ObjectSpec& settings_spec(std::string_view title, std::string_view description, const auto& settings) {
+    static const ObjectSpec spec = object(title, description, fields_of<Settings>(settings));
     return spec;
 }
 
@@ -86,7 +69,10 @@ Fields<SimulationKeys> choice_fields() {
              "`midpoint`, `rk4` and `dormand_prince` are allowed.",
              integrator_choices(), Without{"`\"ballistic\"`; with `motion` `flow` it is `\"rk4\"`"}},
             {"tolerance", [](S& s) -> ErrorTolerance& { return s.integrator.tolerance; },
-             "Largest error of one sub-step of `dormand_prince`.", &tolerance_spec(), Without{"its defaults"}},
+             "Largest error of one sub-step of `dormand_prince`.",
+             &settings_spec<ErrorTolerance>("tolerance", "Largest error of one sub-step of an adaptive integrator.",
+                                            kToleranceTable),
+             Without{"its defaults"}},
             {"response", &S::response, "Method that handles impacts.", response_choices()},
             {"motion", &S::motion, "Cause of the particles' motion.", motion_choices()},
             {"flow", ValueType::named_object,
@@ -99,9 +85,16 @@ Fields<SimulationKeys> choice_fields() {
 
 Fields<SimulationKeys> response_fields() {
     using S = SimulationKeys;
-    return {{"rollback", &S::rollback, "Settings of the rollback response.", &rollback_spec(), Without{"its defaults"}},
-            {"project", &S::project, "Settings of the project response.", &project_spec(), Without{"its defaults"}},
-            {"penalty", &S::penalty, "Settings of the penalty response.", &penalty_spec(), Without{"its defaults"}}};
+    constexpr std::string_view kRollback = "Settings of the rollback response.";
+    constexpr std::string_view kProject = "Settings of the project response.";
+    constexpr std::string_view kPenalty = "Settings of the penalty response.";
+    constexpr Without kDefaults{"its defaults"};
+    return {{"rollback", &S::rollback, kRollback,
+             &settings_spec<RollbackSettings>("rollback", kRollback, kRollbackTable), kDefaults},
+            {"project", &S::project, kProject, &settings_spec<ProjectSettings>("project", kProject, kProjectTable),
+             kDefaults},
+            {"penalty", &S::penalty, kPenalty, &settings_spec<PenaltySettings>("penalty", kPenalty, kPenaltyTable),
+             kDefaults}};
 }
 
 const ObjectSpec& simulation_spec() {
@@ -216,12 +209,10 @@ void build_motion(const SceneContext& context, const ForceBuilder& forces, Simul
             view, "response",
             fmt::format("found \"{}\", expected \"exact\": a flow carries the particles", name_of(options.response)));
     }
-    if (!context.objects("forces").empty()) {
-        context.error(context.root(), "forces", "a flow carries the particles, forces would do nothing: expected none");
-    }
-    if (!context.objects("springs").empty()) {
-        context.error(context.root(), "springs",
-                      "a flow carries the particles, springs would do nothing: expected none");
+    for (const char* key : {"forces", "springs"}) {
+        if (context.objects(key).empty()) continue;
+        context.error(context.root(), key,
+                      fmt::format("a flow carries the particles, {} would do nothing: expected none", key));
     }
 }
 
@@ -245,7 +236,7 @@ void warn_of_walls_along_flows(const SceneContext& context, const SimulationSetu
 
 void build_bounds(const SceneContext& context, SimulationSetup& setup) {
     const ObjectView view = context.root().object("bounds");
-    if (!view.has("lower") || !view.has("upper")) return;
+    if (!view.is_complete()) return;
     const Box3 box = view.read<Box3>();
     for (int axis = 0; axis < 3; ++axis) {
         if (box.lower[axis] < box.upper[axis]) continue;
@@ -258,7 +249,7 @@ void build_bounds(const SceneContext& context, SimulationSetup& setup) {
 
 void build_reference_camera(const SceneContext& context, SimulationSetup& setup) {
     const ObjectView view = context.root().object("reference_camera");
-    if (!view.has("position") || !view.has("target")) return;
+    if (!view.is_complete()) return;
     setup.reference_camera = view.read<ReferenceCamera>();
     if (setup.reference_camera->position == setup.reference_camera->target) refuse_camera_on_target(context, view);
 }

@@ -145,29 +145,25 @@ Problem text_problem(const JsonNode& node, const KeySpec& key) {
     return std::nullopt;
 }
 
-Problem vector_pair_problem(const JsonNode& node, const KeySpec& key) {
-    Vec3 components;
-    const JsonNode::Array* items = node.array();
-    if (items == nullptr || items->size() != 2) return components_problem(node, key, components);
-    for (const JsonNode& item : *items) {
-        if (Problem problem = components_problem(item, key, components)) return problem;
-    }
-    return std::nullopt;
-}
-
 // Returns the problem of a number or a vector.
 Problem quantity_problem(const JsonNode& node, const KeySpec& key) {
-    Vec3 components;
-    return node.number() ? number_problem(node, key) : components_problem(node, key, components);
+    return node.number() ? number_problem(node, key) : vector_problem(node, key);
+}
+
+// Returns the first problem of the two values in a list, or that of a single value.
+Problem pair_of_problem(const JsonNode& node, const KeySpec& key,
+                        Problem (*problem_of)(const JsonNode&, const KeySpec&)) {
+    const JsonNode::Array* items = node.array();
+    if (items == nullptr || items->size() != 2) return problem_of(node, key);
+    const Problem first = problem_of((*items)[0], key);
+    return first ? first : problem_of((*items)[1], key);
 }
 
 // Returns the problem of a number, a vector, or a pair of two numbers or two vectors.
 Problem spread_problem(const JsonNode& node, const KeySpec& key) {
+    if (Problem problem = pair_of_problem(node, key, &quantity_problem)) return problem;
     const JsonNode::Array* items = node.array();
-    if (items == nullptr || items->size() != 2) return quantity_problem(node, key);
-    for (const JsonNode& item : *items) {
-        if (Problem problem = quantity_problem(item, key)) return problem;
-    }
+    if (items == nullptr || items->size() != 2) return std::nullopt;
     const JsonNode& spread = (*items)[1];
     if (((*items)[0].array() == nullptr) != (spread.array() == nullptr)) {
         return fmt::format("found {}, expected mean and spread alike: two numbers or two of [x, y, z]",
@@ -206,23 +202,20 @@ Problem plain_problem(const JsonNode& node, const KeySpec& key) {
         case ValueType::quantity:
             return quantity_problem(node, key);
         case ValueType::vector_pair:
-            return vector_pair_problem(node, key);
-        case ValueType::object:
-        case ValueType::named_object:
-        case ValueType::list:
-        case ValueType::list_or_file:
-        case ValueType::table:
-        case ValueType::text_table:
-        case ValueType::quantity_table:
-            break;
+            return pair_of_problem(node, key, &vector_problem);
+        default:
+            return std::nullopt;
     }
-    return std::nullopt;
 }
 
 std::vector<std::string_view> names_of(const std::vector<const KeySpec*>& keys) {
     std::vector<std::string_view> names;
     for (const KeySpec* key : keys) names.push_back(key->name);
     return names;
+}
+
+bool is_in(const std::vector<std::string_view>& names, std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 class Checker {
@@ -234,13 +227,9 @@ public:
             refuse(node, path, fmt::format("found {}, expected an object {{...}} ({})", described(node), spec.title));
             return;
         }
-        if (spec.variants.empty()) {
-            check_members(node, spec, nullptr, path);
-        } else if (const Variant* variant = checked_variant(node, spec, path)) {
-            check_members(node, spec, variant, path);
-        } else {
-            check_only_names(node, spec, path);
-        }
+        const Variant* variant = spec.variants.empty() ? nullptr : checked_variant(node, spec, path);
+        if (variant == nullptr && !spec.variants.empty()) return check_only_names(node, spec, path);
+        check_members(node, spec, variant, path);
     }
 
 private:
@@ -252,26 +241,18 @@ private:
     void check_value(JsonNode& node, const KeySpec& key, const std::string& path) {
         switch (key.type) {
             case ValueType::object:
-                check_object(node, *key.content, path);
-                return;
+                return check_object(node, *key.content, path);
             case ValueType::named_object:
-                check_named_object(node, key, path);
-                return;
+                return check_named_object(node, key, path);
             case ValueType::list:
-                check_list(node, key, path);
-                return;
+                return check_list(node, key, path);
             case ValueType::list_or_file:
-                if (node.object() != nullptr) {
-                    check_object(node, particle_file_spec(), path);
-                } else {
-                    check_list(node, key, path);
-                }
-                return;
+                if (node.object() != nullptr) return check_object(node, particle_file_spec(), path);
+                return check_list(node, key, path);
             case ValueType::table:
             case ValueType::text_table:
             case ValueType::quantity_table:
-                check_table(node, key, path);
-                return;
+                return check_table(node, key, path);
             default:
                 if (const Problem problem = plain_problem(node, key)) refuse(node, path, *problem);
         }
@@ -344,7 +325,7 @@ private:
         if (node.find("type") != nullptr) return;
         const std::vector<std::string_view> known = all_names(spec);
         for (JsonMember& member : *node.object()) {
-            if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
+            if (is_in(known, member.key)) continue;
             const auto nearest = nearest_absent(member.key, known, node);
             if (nearest.size() != 1 || nearest[0] != "type") continue;
             report_unknown(member, path, nearest, known, spec);
@@ -353,12 +334,13 @@ private:
         }
     }
 
+    // Returns the names of all keys of an object with variants.
     static std::vector<std::string_view> all_names(const ObjectSpec& spec) {
         std::vector<std::string_view> names = names_of(keys_of(spec, nullptr));
-        if (!spec.variants.empty()) names.emplace_back("type");
+        names.emplace_back("type");
         for (const Variant& variant : spec.variants) {
             for (const KeySpec& key : variant.keys) {
-                if (std::find(names.begin(), names.end(), key.name) == names.end()) names.push_back(key.name);
+                if (!is_in(names, key.name)) names.push_back(key.name);
             }
         }
         return names;
@@ -396,25 +378,24 @@ private:
     void check_only_names(JsonNode& node, const ObjectSpec& spec, const std::string& path) {
         const std::vector<std::string_view> known = all_names(spec);
         for (const JsonMember& member : *node.object()) {
-            if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
-            report_unknown(member, path, nearest_absent(member.key, known, node), known, spec);
+            if (!is_in(known, member.key))
+                report_unknown(member, path, nearest_absent(member.key, known, node), known, spec);
         }
         node.value = std::monostate{};
     }
 
     void check_members(JsonNode& node, const ObjectSpec& spec, const Variant* variant, const std::string& path) {
-        const std::vector<const KeySpec*> keys = keys_of(spec, variant);
         std::set<std::string_view> excused;
         for (JsonMember& member : *node.object()) {
             if (variant != nullptr && member.key == "type") continue;
             correct_key(member, node, spec, variant, path, excused);
-            const KeySpec* key = find_key(spec, variant, member.key);
-            if (key != nullptr) {
+            if (const KeySpec* key = find_key(spec, variant, member.key)) {
                 check_value(member.value, *key, path_of_key(path, member.key));
             } else {
                 member.value.value = std::monostate{};  // no rule applies to an unknown key
             }
         }
+        const std::vector<const KeySpec*> keys = keys_of(spec, variant);
         for (const KeySpec* key : keys) {
             if (key->required && node.find(key->name) == nullptr && !excused.contains(key->name)) {
                 diagnostics_.error(node.location, path_of_key(path, key->name),
@@ -422,7 +403,7 @@ private:
             }
         }
         if (variant != nullptr) check_alternatives(node, *variant, path, excused);
-        for (const KeySpec* key : keys_of(spec, variant)) check_company(node, *key, path, excused);
+        for (const KeySpec* key : keys) check_company(node, *key, path, excused);
     }
 
     // Reports a key if it is unknown. If only one correction is possible, the key gets the corrected name.
@@ -476,6 +457,7 @@ private:
                                        there == 0 ? "none" : "more than one", quoted_list(variant.exactly_one_of)));
     }
 
+    // Reports a key without the key that it needs.
     void check_company(const JsonNode& node, const KeySpec& key, const std::string& path,
                        const std::set<std::string_view>& excused) {
         const JsonNode* value = node.find(key.name);

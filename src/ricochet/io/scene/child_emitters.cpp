@@ -21,10 +21,6 @@ struct ChildKeys : ParentRule {
 };
 
 template <class Shape>
-Field<Shape> center() {
-    return {"center", &Shape::center, kCoordinate, "m", "Its centre."};
-}
-template <class Shape>
 Field<Shape> radius() {
     return {"radius", &Shape::radius, kLength, "m", "Its radius.", kRequired};
 }
@@ -49,8 +45,8 @@ void find_parents(const SceneContext& context, SimulationSetup& setup) {
         const std::string name = views[k].text("parent");
         const auto found = std::find(names.begin(), names.end(), name);
         if (found == names.end()) {
-            std::vector<std::string_view> others =
-                names;  // an emitter can be its own parent, but its own name is not a useful suggestion
+            // An emitter can be its own parent, but its own name is not a useful suggestion.
+            std::vector<std::string_view> others = names;
             others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
             context.error(views[k], "parent", unknown_name("emitter", name, others.empty() ? names : others));
         } else {
@@ -112,17 +108,17 @@ const ObjectSpec& cloud_spec() {
 std::vector<Variant> simple_shapes() {
     using Disk = DiskShape;
     using Ball = SphereShape;
-    return {variant<PointShape>("point", "All at one point.", {center<PointShape>()}),
+    return {variant<PointShape>("point", "All at one point.", {center(&PointShape::center)}),
             variant<Disk>(
                 "disk", "Uniform on a flat disk.",
-                {center<Disk>(),
+                {center(&Disk::center),
                  {"normal", &Disk::normal, kCoordinate, "", "Normal of the disk, of any length.", kRequired, kNotZero},
                  radius<Disk>()}),
-            variant<BoxShape>(
-                "box", "Uniform in a box along the axes.",
-                {center<BoxShape>(), {"size", &BoxShape::size, kLengthOrZero, "m", "Full edge lengths.", kRequired}}),
+            variant<BoxShape>("box", "Uniform in a box along the axes.",
+                              {center(&BoxShape::center),
+                               {"size", &BoxShape::size, kLengthOrZero, "m", "Full edge lengths.", kRequired}}),
             variant<Ball>("sphere", "Uniform in a ball, or on its surface.",
-                          {center<Ball>(),
+                          {center(&Ball::center),
                            radius<Ball>(),
                            {"surface", &Ball::surface, "true: only on the surface, launched outward."}}),
             cone_variant()};

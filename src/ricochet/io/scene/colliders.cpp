@@ -105,9 +105,8 @@ private:
 
     void warn_about_idle_motion(const ObjectView& view, const Material& material) {
         if (material.motion.is_none() || material.drives()) return;
-        context_.diagnostics().warning(view.location_of("surface_motion"), view.path_of("surface_motion"),
-                                       "nothing comes of it without friction, resistance to rolling or spinning, or "
-                                       "diffuse reflection");
+        context_.warn(view, "surface_motion",
+                      "nothing comes of it without friction, resistance to rolling or spinning, or diffuse reflection");
     }
 
     // Returns the index of a collider's material. All colliders without a material share a perfect one, which is
@@ -206,18 +205,16 @@ private:
         return mesh;
     }
 
-    // Reports keys and responses that cannot be combined with a deforming mesh.
-    void require_exact(const ObjectView& view) {
-        for (const char* key : {"frame", "motion"}) {
-            if (view.has(key)) context_.error(view, key, "a mesh that deforms stands in the world, expected none");
-        }
+    // Reports a key if the response, or a flow that carries the particles, does not support moving colliders.
+    // colliders, by_flow: parts of the messages.
+    void require_exact(const ObjectView& view, std::string_view key, std::string_view colliders,
+                       std::string_view by_flow) {
         if (setup_.options.response != ResponseKind::exact) {
-            context_.error(view, "deformation",
-                           fmt::format("the response \"{}\" knows no meshes that deform, expected none, or \"exact\"",
-                                       name_of(setup_.options.response)));
+            context_.error(view, key,
+                           fmt::format("the response \"{}\" knows no {}, expected none, or \"exact\"",
+                                       name_of(setup_.options.response), colliders));
         } else if (setup_.options.flow) {
-            context_.error(view, "deformation",
-                           "particles that a flow carries cannot hit meshes that deform, expected none");
+            context_.error(view, key, fmt::format("particles that a flow carries {}, expected none", by_flow));
         }
     }
 
@@ -225,19 +222,17 @@ private:
     // A collider that is scaled over time becomes a deforming mesh.
     std::string frame_of(const ObjectView& view, ColliderDescription& collider) {
         if (view.has("deformation")) {
-            require_exact(view);
+            for (const char* key : {"frame", "motion"}) {
+                if (view.has(key)) context_.error(view, key, "a mesh that deforms stands in the world, expected none");
+            }
+            require_exact(view, "deformation", "meshes that deform", "cannot hit meshes that deform");
             return {};
         }
         std::string parent;
         if (view.has("frame") && is_frame_named(context_, view, scene_frames_)) parent = view.text("frame");
-        const bool moves = !parent.empty() || view.has("motion");
-        if (moves && setup_.options.response != ResponseKind::exact) {
-            context_.error(view, parent.empty() ? "motion" : "frame",
-                           fmt::format("the response \"{}\" knows no colliders that move, expected none, or \"exact\"",
-                                       name_of(setup_.options.response)));
-        } else if (moves && setup_.options.flow) {
-            context_.error(view, parent.empty() ? "motion" : "frame",
-                           "particles that a flow carries know no colliders that move, expected none");
+        if (!parent.empty() || view.has("motion")) {
+            require_exact(view, parent.empty() ? "motion" : "frame", "colliders that move",
+                          "know no colliders that move");
         }
         FrameDescription frame;
         if (view.has("motion")) frame = frame_through(view.objects("motion"), context_.diagnostics());
@@ -299,9 +294,9 @@ const ObjectSpec& collider_spec() {
           "Name of a frame in `frames`. The collider stands in it and moves with it. Requires the response \"exact\".",
           Without{"the world"}},
          {"motion", ValueType::list,
-          "Poses of a frame of its own in order of time, at least one: `{\"time\": ..., \"position\": ..., "
-          "\"rotation\": ..., \"scale\": ...}`. They are relative to `frame` if that is given, too. The collider's own "
-          "position and rotation are relative to the poses.",
+          "Poses that the collider moves through, in order of time: `{\"time\": ..., \"position\": ..., "
+          "\"rotation\": ..., \"scale\": ...}`. At least one pose is required. The poses are relative to `frame` if "
+          "that key is present. The collider's own position and rotation are relative to the poses.",
           Without{"it does not move by itself"}, kNotEmpty, &key_pose_spec()}},
         collider_shapes());
     return spec;

@@ -42,16 +42,17 @@ std::shared_ptr<const TriangleMesh> SceneContext::load_mesh(const ObjectView& vi
     if (!view.has("file")) return nullptr;
     try {
         const std::filesystem::path path = file_of(view);
-        auto mesh = meshes_.load(path, up_of(view));
-        for (const std::filesystem::path& file : meshes_.files(path)) note(file);
         const MeshUp up = up_of(view);
-        if (up == MeshUp::y || (up == MeshUp::by_format && meshes_.is_y_up(path))) {
+        auto mesh = meshes_.load(path, up);
+        const MeshFile& read = meshes_.file(path);
+        for (const std::filesystem::path& file : read.files) note(file);
+        if (up == MeshUp::y || (up == MeshUp::by_format && read.is_y_up)) {
             diagnostics_.note(view.location_of("file"), view.path_of("file"),
                               fmt::format("{} has y up, as {} says: read as (x, -z, y), so that z points up",
                                           path.string(), up == MeshUp::y ? "\"up\"" : "glTF"));
         }
         warn_of_size(view, *mesh, path);
-        for (const std::string& what : meshes_.notes(path)) {
+        for (const std::string& what : read.notes) {
             diagnostics_.note(view.location_of("file"), view.path_of("file"), path.string() + ": " + what);
         }
         return mesh;
@@ -92,7 +93,7 @@ std::shared_ptr<const TriangleMesh> SceneContext::placed_mesh(const ObjectView& 
 const MeshGroups* SceneContext::load_groups(const ObjectView& view) {
     if (!view.has("file")) return nullptr;
     try {
-        return &meshes_.groups(file_of(view));
+        return &meshes_.file(file_of(view)).groups;
     } catch (const InputError&) {
         return nullptr;  // load_mesh() reports the reason
     }

@@ -54,25 +54,21 @@ public:
     }
     /// Adds a path to files().
     void note(const std::filesystem::path& path) const { files_.insert(path); }
-    /// Adds the size of memory that the scene description occupies, in bytes.
+    /// Adds memory that the scene description occupies, in bytes.
     void add_memory(double bytes) const { memory_bytes_ += bytes; }
-    /// Returns the sum of the sizes from add_memory(), in bytes.
     [[nodiscard]] double memory_bytes() const { return memory_bytes_; }
     /// Returns all added paths, without duplicates.
     [[nodiscard]] std::vector<std::filesystem::path> files() const { return {files_.begin(), files_.end()}; }
-    /// Loads the mesh of the key "file", with the up axis of the key "up". Returns a null pointer after reporting an
-    /// error if the mesh cannot be loaded.
+    /// Loads the mesh of the keys "file" and "up". Returns a null pointer after reporting an error.
     [[nodiscard]] std::shared_ptr<const TriangleMesh> load_mesh(const ObjectView& view);
-    /// Returns a mesh with its placement applied, in world coordinates. If a vertex is out of range, reports it at the
-    /// key and returns a null pointer.
+    /// Returns a mesh with its placement applied. Returns a null pointer after reporting a vertex out of range.
     [[nodiscard]] std::shared_ptr<const TriangleMesh> placed_mesh(const ObjectView& view, std::string_view key,
                                                                   const TriangleMesh& mesh,
                                                                   const Placement& placement) const;
     /// Returns the groups of the mesh of the key "file". Returns a null pointer if load_mesh() does.
     [[nodiscard]] const MeshGroups* load_groups(const ObjectView& view);
 
-    /// Returns the object's name, or a default name made from its kind and its index in the list. Reports a name that
-    /// is already in `taken`.
+    /// Returns the object's name, or a name made from its kind and its index. Reports a name that is in `taken`.
     [[nodiscard]] std::string unique_name(const ObjectView& view, std::size_t index, std::string_view kind,
                                           std::set<std::string>& taken) const;
 
@@ -94,7 +90,6 @@ private:
 
 // Tables of keys.
 
-/// Table of the whole scene.
 [[nodiscard]] const ObjectSpec& scene_spec();
 [[nodiscard]] const ObjectSpec& flow_spec();
 [[nodiscard]] const ObjectSpec& force_spec();
@@ -114,9 +109,8 @@ private:
 [[nodiscard]] const ObjectSpec& camera_spec();
 [[nodiscard]] const ObjectSpec& picture_spec();
 [[nodiscard]] const ObjectSpec& collider_looks_spec();
-/// Table of a declared attribute: `{"components": ..., "default": ...}`.
 [[nodiscard]] const ObjectSpec& attribute_spec();
-/// Returns the keys of an object {"lower": ..., "upper": ...} that describes a Box3.
+/// Returns the keys `lower` and `upper` of a box.
 [[nodiscard]] Fields<Box3> box_fields(std::string_view upper_meaning);
 
 inline constexpr Range kFieldOfView = between(1.0, 170.0);
@@ -131,8 +125,7 @@ struct RotationTarget {
 };
 [[nodiscard]] const ObjectSpec& rotation_spec();
 
-/// Returns the keys position, rotation and scale, which set a member of type Placement. needs: key that must also be
-/// present.
+/// Returns the keys position, rotation and scale of a placement. needs: key that must also be present.
 template <class Struct>
 [[nodiscard]] Fields<Struct> placement_fields(Placement Struct::*placement, Needs needs = {}) {
     return {
@@ -149,7 +142,7 @@ template <class Struct>
 
 inline constexpr std::string_view kMeshFileMeaning = "Mesh file: OBJ, PLY, STL, OFF or glTF (.gltf, .glb).";
 
-/// Returns the key for the upward axis of a mesh file, for load_mesh().
+/// Returns the key for the upward axis of a mesh file.
 template <class Struct>
 [[nodiscard]] Field<Struct> up_field(Needs needs = {}) {
     return {"up",
@@ -164,28 +157,23 @@ template <class Struct>
 /// Returns the value of the key "up" of an object.
 [[nodiscard]] MeshUp up_of(const ObjectView& view);
 
-/// Table of a curve {"interpolation": ..., "keys": [{"time": ..., "value": NUMBER}], "ends": ...}. The values have the
-/// unit of the key that contains the curve.
 [[nodiscard]] const ObjectSpec& number_curve_spec();
-/// Table of a curve with "value": [x, y, z].
 [[nodiscard]] const ObjectSpec& vector_curve_spec();
-/// Table of a curve of scale factors. "value" is a factor above 0, or [x, y, z] with three such factors.
 [[nodiscard]] const ObjectSpec& scale_curve_spec();
-/// Returns the curve of an object of number_curve_spec(). An error is reported with the object's path, for example
-/// "frames.arm.motions[0]". The result is then the constant 0.
+/// Return the curve of an object of number_curve_spec() or vector_curve_spec(), or the constant 0 after reporting an
+/// error.
 [[nodiscard]] KeyedCurve<double> number_curve_of(const ObjectView& view, Diagnostics& diagnostics);
 [[nodiscard]] KeyedCurve<Vec3> vector_curve_of(const ObjectView& view, Diagnostics& diagnostics);
 
-/// Returns the keys of an emitter for appearance and attributes, for example color and over_life. read_looks() reads
-/// their values.
-[[nodiscard]] std::vector<KeySpec> emitter_look_keys();
+/// Returns the keys of an emitter for appearance and attributes. read_looks() reads their values.
+[[nodiscard]] Fields<EmitterDescription> emitter_look_fields();
 /// Returns the keys of an explicit particle for appearance and attributes. particle_values() reads their values.
-[[nodiscard]] std::vector<KeySpec> particle_look_keys();
+[[nodiscard]] Fields<Particle> particle_look_fields();
 
 // Functions that build the parts of a scene.
 
-/// Builds the scene from a document that check_scene() has checked. Reports the errors that check_scene() cannot find:
-/// unknown names, faults of files, and contradictory values. folder: folder to which paths are relative.
+/// Builds the scene from a checked document. Reports unknown names, faults of files, and contradictory values. folder:
+/// folder to which paths are relative.
 [[nodiscard]] SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& folder,
                                            Diagnostics& diagnostics);
 
@@ -194,7 +182,7 @@ class ForceBuilder {
 public:
     explicit ForceBuilder(const SceneContext& context);
 
-    /// Returns all valid forces. Reports the errors of invalid forces.
+    /// Returns all valid forces, and reports the others.
     [[nodiscard]] std::vector<std::unique_ptr<Force>> forces() const;
     /// Returns the flow that the key "flow" describes or names. Returns a null pointer if the key is absent or invalid.
     [[nodiscard]] FlowPointer flow_at(const ObjectView& view) const;
@@ -207,28 +195,23 @@ private:
     std::map<std::string, FlowPointer, std::less<>> flows_;
 };
 
-/// Table of the key "deformation" of mesh colliders: positions of the vertices over time.
 [[nodiscard]] const ObjectSpec& deformation_spec();
-/// Returns the motion that a collider's key "deformation" describes. Returns a null pointer if the key is absent or
-/// invalid.
+/// Returns the motion of a collider's key "deformation". Returns a null pointer if the key is absent or invalid.
 [[nodiscard]] std::shared_ptr<const MeshMotion> deformation_of(SceneContext& context, const ObjectView& collider);
 
 /// Converts a collider to a deforming mesh if its frame or a parent of this frame is scaled. Returns false if no frame
-/// is scaled. Reports shapes that cannot be scaled. own: frame defined by the collider's own keys, which is not in
-/// `frames`.
+/// is scaled. Reports shapes that cannot be scaled. own: frame of the collider's own keys, which is not in `frames`.
 [[nodiscard]] bool stretch(SceneContext& context, const ObjectView& view, const SimulationOptions& options,
                            const FrameTree& frames, const FrameDescription& own, ColliderDescription& collider);
 
 /// Builds the colliders. frames: frames of the scene, to which frames from the colliders' own keys are added.
 void build_colliders(SceneContext& context, SimulationSetup& setup, std::vector<FrameDescription>& frames);
-/// Builds the bodies of all driven frames. The mass of a body can follow from the colliders in its frame.
+/// Builds the bodies of all driven frames, from the colliders in these frames.
 void build_bodies(const SceneContext& context, SimulationSetup& setup, const std::vector<FrameDescription>& frames);
-/// Builds the declared attributes, and the appearance attributes that emitters and explicit particles use. Reports
-/// invalid names and defaults.
+/// Builds the declared attributes, and the appearance attributes that emitters and explicit particles use.
 void build_attributes(const SceneContext& context, SimulationSetup& setup);
 /// Returns the scene's frames. After an error, the returned frames have no parents.
 [[nodiscard]] std::vector<FrameDescription> frames_of(const SceneContext& context);
-/// Table of the poses in a collider's key "motion".
 [[nodiscard]] const ObjectSpec& key_pose_spec();
 /// Returns a frame that moves through poses.
 [[nodiscard]] FrameDescription frame_through(const std::vector<ObjectView>& keys, Diagnostics& diagnostics);
@@ -240,57 +223,51 @@ void build_emitters(SceneContext& context, SimulationSetup& setup);
 [[nodiscard]] std::vector<Variant> simple_shapes();
 /// Returns a shape of simple_shapes(), or a point if the shape was refused.
 [[nodiscard]] EmitterShape simple_shape_of(const ObjectView& view);
-/// Table of the key "cloud" of an emitter of type child.
 [[nodiscard]] const ObjectSpec& cloud_spec();
-/// Returns the keys of an emitter of type child, whose particles are born from other particles.
 [[nodiscard]] Variant child_variant();
-/// Returns the rule of an emitter of type child. check_parents() sets the number of the parent when all emitters are
-/// known.
+/// Returns the rule of an emitter of type child. check_parents() sets the number of the parent.
 [[nodiscard]] ParentRule rule_of(const SceneContext& context, const ObjectView& view,
                                  const EmitterDescription& emitter);
 /// Sets the parents of emitters of type child. Reports unknown names and parents whose mass is distributed twice. Warns
-/// of cycles.
+/// of cycles. Must run when all emitters are known.
 void check_parents(const SceneContext& context, SimulationSetup& setup);
 /// Reports settings that cannot be combined with clouds. Must run after all parts that clouds depend on.
 void check_clouds(const SceneContext& context, const SimulationSetup& setup);
-/// Sets the attributes and curves of an emitter. Reports undeclared attributes and wrong numbers of components.
+/// Sets the attributes and curves of an emitter.
 void read_looks(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
                 EmitterDescription& emitter);
 void build_particles(SceneContext& context, SimulationSetup& setup);
-/// Reads the settings for contacts between spheres. Must run before build_attributes(), which needs the materials of
-/// spheres.
+/// Reads the settings for contacts between spheres. Must run before build_attributes(), which needs their materials.
 void read_particle_contacts(const SceneContext& context, SimulationOptions& options);
 /// Reports settings that cannot be combined with contacts between spheres. Must run after build_springs().
 void check_particle_contacts(const SceneContext& context, const SimulationSetup& setup);
-/// Returns the value of kMaterialAttribute for the key "material" of an emitter or a particle. Returns nothing if the
-/// key is absent, or after reporting an error.
+/// Returns the value of kMaterialAttribute for the key "material". Returns nothing if the key is absent or refused.
 [[nodiscard]] std::optional<AttributeValue> material_of(const SceneContext& context, const SimulationSetup& setup,
                                                         const ObjectView& view);
 /// Builds the forces between particles. Must run after the attributes, bodies and emitters are built.
 void build_particle_forces(const SceneContext& context, SimulationSetup& setup);
 /// Builds the heat settings. Must run after all other parts of the setup are built.
 void build_heat(const SceneContext& context, const ForceBuilder& forces, SimulationSetup& setup);
-/// Returns the attribute values of an explicit particle, one per column. The list is empty if the scene has no columns.
+/// Returns the attribute values of an explicit particle, one per column.
 [[nodiscard]] std::vector<AttributeValue> particle_values(const SceneContext& context, const SimulationSetup& setup,
                                                           const ObjectView& view);
 /// Builds the springs. Appends the particles of ropes, chains and cloth to the particles of the scene.
 void build_springs(SceneContext& context, SimulationSetup& setup);
-/// Builds the counters. Reports duplicate names.
 void build_counters(const SceneContext& context, SimulationSetup& setup);
 /// Sets the estimated memory of a run. If it exceeds the limit of this process, reports the part of the scene that
 /// needs most memory. Warns of bursts that exceed the largest number of particles.
 void check_memory(const SceneContext& context, SceneDescription& scene);
-/// Table of the key "drawing" of an emitter.
 [[nodiscard]] const ObjectSpec& drawing_spec();
 /// Returns the number of the drawing that an emitter with the key "drawing" adds to the scene, counted from 1.
 [[nodiscard]] std::size_t drawing_number(const SceneContext& context, const ObjectView& emitter);
 /// Builds the camera, the picture settings and the drawings of emitters. Must run after the frames are built.
 void build_pictures(const SceneContext& context, SceneDescription& scene);
-/// Warns of ids in a list if no particle has or will have them.
+/// Warns of ids of the key "particles" if no particle has or will have them.
 void warn_of_unknown_ids(const SceneContext& context, const ObjectView& view, const SimulationSetup& setup,
                          std::span<const std::uint64_t> ids);
-/// Warns of unknown ids in the scene's forces on single particles.
 void warn_of_forces_on_nobody(const SceneContext& context, const SimulationSetup& setup);
+/// Returns true if no particle has a radius, from the start or by an emitter.
+[[nodiscard]] bool has_only_points(const SimulationSetup& setup);
 /// Warns of forces that depend on the particle radius if all particles are points, because such forces are zero.
 void warn_of_forces_without_radius(const SceneContext& context, const SimulationSetup& setup);
 
@@ -304,11 +281,9 @@ struct ParticleTable {
     std::vector<std::string> unused_columns;  ///< columns of a final state that have no meaning at the start of a run
 };
 
-/// Parses comma-separated values: a header line with the names of the columns, then one line per particle. The columns
-/// x, y and z are required. The columns vx, vy, vz, mass, radius, spin_x, spin_y, spin_z and lifetime are optional.
-/// Columns can be in any order. Further columns are declared attributes (name, or name_x, name_y, name_z) and
-/// attributes for appearance. The final state that a run writes is a valid table. Faults of the contents are returned
-/// as errors, never thrown.
+/// Parses comma-separated values: a header line with the names of the columns, in any order, then one line per
+/// particle. The columns x, y and z are required. Columns of attributes are `name`, or `name_x`, `name_y` and `name_z`.
+/// The final state that a run writes is a valid table. Faults of the contents are returned as errors, never thrown.
 [[nodiscard]] ParticleTable parse_particle_table(std::string_view text, const std::string& name,
                                                  std::vector<AttributeDescription> declared = {});
 /// Reads a .csv file. Throws InputError if the file cannot be read or has another extension.
@@ -340,8 +315,8 @@ const AnyLaw* law_of(const std::vector<AnyLaw>& laws, const ObjectView& view) {
     return found == laws.end() ? nullptr : &*found;
 }
 
-/// Calls a function that makes an object. Reports an InputError that it throws, with the source location of the view.
-/// The error is not reported if values have been refused before, because it may concern defaults that replaced them.
+/// Calls a function that makes an object. Reports an InputError that it throws, unless values have been refused before:
+/// the error may then concern defaults that replaced them.
 template <class Make>
 auto made(const SceneContext& context, const ObjectView& view, const Make& make) -> decltype(make()) {
     try {

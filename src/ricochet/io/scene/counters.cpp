@@ -1,11 +1,8 @@
 // Counters of a scene: disks that count the particles passing through them.
-#include <fmt/format.h>
-
 #include <set>
 #include <string>
 #include <utility>
 
-#include "ricochet/core/printable.h"
 #include "ricochet/io/scene/context.h"
 
 namespace ricochet::detail {
@@ -27,11 +24,7 @@ void build_counters(const SceneContext& context, SimulationSetup& setup) {
     std::set<std::string> taken;
     for (const ObjectView& view : context.objects("counters")) {
         auto counter = view.read<CounterDescription>();
-        if (!counter.name.empty() && !taken.insert(counter.name).second) {
-            context.error(view, "name",
-                          fmt::format("the name \"{}\" is taken by another counter, expected one of its own",
-                                      printable(counter.name, 60)));
-        }
+        if (view.has("name")) counter.name = context.unique_name(view, setup.counters.size(), "counter", taken);
         setup.counters.push_back(std::move(counter));
     }
 }

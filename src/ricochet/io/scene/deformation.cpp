@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <optional>
 #include <string>
@@ -264,29 +263,20 @@ private:
 
 /// Returns the mesh of a shape in the coordinates of its frame, or null for shapes without vertices.
 std::shared_ptr<const TriangleMesh> mesh_within_frame(const ColliderShape& shape) {
-    const auto* const mesh = std::get_if<MeshShape>(&shape);
-    if (mesh != nullptr && mesh->mesh) {
-        return std::make_shared<const TriangleMesh>(transformed(*mesh->mesh, mesh->placement));
+    if (const auto* const box = std::get_if<CuboidShape>(&shape)) {
+        return std::make_shared<const TriangleMesh>(transformed(cuboid_mesh(box->size), box->placement));
     }
-    const auto* const box = std::get_if<CuboidShape>(&shape);
-    if (box == nullptr) return nullptr;
-    return std::make_shared<const TriangleMesh>(transformed(cuboid_mesh(box->size), box->placement));
+    const auto* const mesh = std::get_if<MeshShape>(&shape);
+    if (mesh == nullptr || !mesh->mesh) return nullptr;
+    return std::make_shared<const TriangleMesh>(transformed(*mesh->mesh, mesh->placement));
 }
 
 /// Returns the message for a shape that cannot be scaled over time.
 std::string without_vertices(std::string_view type, bool by_poses, const std::string& frame) {
-    if (by_poses) {
-        return fmt::format(
-            "a {} keeps its size: poses with \"scale\" move the vertices of meshes and boxes, expected one of these, "
-            "or "
-            "no \"scale\"",
-            type);
-    }
-    return fmt::format(
-        "a {} keeps its size: the frame \"{}\" is scaled, which moves the vertices of meshes and boxes, expected one "
-        "of "
-        "these, or a frame without a \"scale\"",
-        type, frame);
+    const std::string cause =
+        by_poses ? "poses with \"scale\" move" : fmt::format("the frame \"{}\" is scaled, which moves", frame);
+    return fmt::format("a {} keeps its size: {} the vertices of meshes and boxes, expected one of these, or {}", type,
+                       cause, by_poses ? "no \"scale\"" : "a frame without a \"scale\"");
 }
 
 /// Returns the time range of the poses. Outside this range the collider is at rest, unless a parent frame moves.
@@ -294,10 +284,6 @@ std::pair<double, double> times_of(const std::vector<ObjectView>& poses) {
     const double begin = poses.front().node("time").number().value_or(0.0);
     const double end = poses.back().node("time").number().value_or(0.0);
     return {begin, std::max(end, begin + (poses.size() == 1 ? 1.0 : 0.0))};
-}
-
-std::pair<double, double> times_of(const SimulationOptions& options) {
-    return {0.0, options.duration + options.time_step};
 }
 
 }  // namespace
@@ -315,7 +301,7 @@ const ObjectSpec& deformation_spec() {
         "deformation",
         "Positions of the vertices of a mesh over time. Between two keys each vertex moves on a straight line at "
         "constant speed. The collider's position, rotation and scale apply to all keys.",
-        {{"ends", &DeformationKeys::ends, "Vertices before the first and after the last key.",
+        {{"ends", &DeformationKeys::ends, "Positions of the vertices before the first key and after the last key.",
           Choices{choice(MeshEnds::hold, "hold", "the vertices of that key, at rest"),
                   choice(MeshEnds::repeat, "repeat",
                          "the keys repeat. The change from the last key to the first takes the time between the last "
@@ -363,7 +349,8 @@ bool stretch(SceneContext& context, const ObjectView& view, const SimulationOpti
         return true;
     }
     try {
-        const auto [begin, end] = own.parent.empty() ? times_of(view.objects("motion")) : times_of(options);
+        const auto [begin, end] = own.parent.empty() ? times_of(view.objects("motion"))
+                                                     : std::pair(0.0, options.duration + options.time_step);
         std::vector<FrameDescription> all{own};
         for (std::size_t k = 0; k < frames.size(); ++k) all.push_back(frames.description(k));
         MeshShape shape{mesh, {}, "", {}};

@@ -10,8 +10,6 @@
 
 namespace ricochet::detail {
 
-// Errors and warnings.
-
 namespace {
 
 constexpr std::size_t kMostErrors = 10;
@@ -22,6 +20,21 @@ bool is_plain(std::string_view key) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
                c == '$';
     });
+}
+
+constexpr std::size_t kLongestWord = 100;
+
+// Returns the number of tolerated edits: one for words of up to four letters, and one more for every four further
+// letters.
+std::size_t tolerated_edits(std::size_t length) { return length == 0 ? 0 : 1 + (length - 1) / 4; }
+
+std::string without_style(std::string_view word) {
+    std::string plain;
+    for (const char c : word) {
+        if (c == '_' || c == '-' || c == ' ') continue;
+        plain += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    }
+    return plain;
 }
 
 }  // namespace
@@ -81,27 +94,6 @@ std::vector<std::string> Diagnostics::lines(std::vector<Entry> entries, std::siz
     }
     return result;
 }
-
-// Suggestions for misspelt names.
-
-namespace {
-
-constexpr std::size_t kLongestWord = 100;
-
-// Returns the number of tolerated edits: one for words of up to four letters, and one more for every four further
-// letters.
-std::size_t tolerated_edits(std::size_t length) { return length == 0 ? 0 : 1 + (length - 1) / 4; }
-
-std::string without_style(std::string_view word) {
-    std::string plain;
-    for (const char c : word) {
-        if (c == '_' || c == '-' || c == ' ') continue;
-        plain += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    }
-    return plain;
-}
-
-}  // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
     // The vectors are rows i - 2, i - 1 and i of the table of distances between prefixes.

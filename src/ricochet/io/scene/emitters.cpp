@@ -31,6 +31,8 @@ constexpr Range kRate = between(0.0, 1e12);
 Fields<EmitterDescription> schedule_fields() {
     using E = EmitterDescription;
     return {
+        {"name", ValueType::text, "Unique name for messages and reports.",
+         Without{"made from type and index in the list"}},
         {"burst", &E::burst, kCount, "", "Number of particles born at once at `start`."},
         {"rate", &E::rate, kRate, "1/s", "Particles per second from `start` to `stop`, drawn anew for every second."},
         {"rate_per_frame", &E::rate_per_frame, kRate, "",
@@ -66,11 +68,6 @@ Fields<EmitterDescription> launch_fields() {
              Without{"the world"}}};
 }
 
-Field<Unbound> emitter_name() {
-    return {"name", ValueType::text, "Unique name for messages and reports.",
-            Without{"made from type and index in the list"}};
-}
-
 Variant mesh_variant() {
     return variant("mesh",
                    "Uniform by area on a mesh, launched along the normals of its triangles. Positions are just off the "
@@ -97,13 +94,13 @@ const MeshShape* mesh_collider(const SceneContext& context, const SimulationSetu
     std::vector<std::string_view> names;
     for (const ColliderDescription& collider : setup.colliders) {
         const auto* mesh = std::get_if<MeshShape>(&collider.shape);
-        if (mesh != nullptr && collider.name == name && mesh->motion) {
-            context.error(view, "collider",
-                          fmt::format("'{}' is a mesh that deforms, expected one that keeps its shape", name));
-            return nullptr;
-        }
-        if (mesh != nullptr && collider.name == name) return mesh;
-        if (mesh != nullptr) names.push_back(collider.name);
+        if (mesh == nullptr) continue;
+        names.push_back(collider.name);
+        if (collider.name != name) continue;
+        if (!mesh->motion) return mesh;
+        context.error(view, "collider",
+                      fmt::format("'{}' is a mesh that deforms, expected one that keeps its shape", name));
+        return nullptr;
     }
     context.error(view, "collider", unknown_name("mesh collider", name, names));
     return nullptr;
@@ -153,39 +150,30 @@ constexpr const char* kNoEmitterOnBody =
 void attach(const SceneContext& context, const ObjectView& view, const SimulationSetup& setup,
             EmitterDescription& emitter) {
     const bool is_on_collider = view.type() == "mesh" && view.has("collider");
-    if (is_on_collider && !view.has("frame")) {
-        const auto collider = std::find_if(setup.colliders.begin(), setup.colliders.end(),
-                                           [&](const auto& other) { return other.name == view.text("collider"); });
-        const auto frame = collider == setup.colliders.end() ? std::nullopt : setup.frames->find(collider->frame);
-        if (!frame) return;
-        if (setup.frames->description(*frame).is_driven) {
-            context.error(view, "collider", kNoEmitterOnBody);
-            return;
-        }
-        emitter.frames = setup.frames;
-        emitter.frame = *frame;
-        return;
-    }
-    if (!view.has("frame")) return;
-    if (is_on_collider) {
+    const bool has_frame = view.has("frame");
+    std::optional<std::size_t> frame;
+    if (has_frame && is_on_collider) {
         context.error(view, "frame",
                       "the emitter is in its collider's frame, expected an emitter of another kind or a file");
-        return;
-    }
-    if (view.type() == "child") {
+    } else if (has_frame && view.type() == "child") {
         context.error(view, "frame",
                       "children are born at the positions of their parents, expected an emitter of another kind, or a "
                       "\"cloud\", which follows its parent");
-        return;
+    } else if (has_frame) {
+        if (is_frame_named(context, view, *setup.frames)) frame = setup.frames->find(view.text("frame"));
+    } else if (is_on_collider) {
+        const auto collider = std::find_if(setup.colliders.begin(), setup.colliders.end(),
+                                           [&](const auto& other) { return other.name == view.text("collider"); });
+        if (collider != setup.colliders.end()) frame = setup.frames->find(collider->frame);
     }
-    if (!is_frame_named(context, view, *setup.frames)) return;
-    if (setup.frames->description(*setup.frames->find(view.text("frame"))).is_driven) {
-        context.error(view, "frame", kNoEmitterOnBody);
+    if (!frame) return;
+    if (setup.frames->description(*frame).is_driven) {
+        context.error(view, has_frame ? "frame" : "collider", kNoEmitterOnBody);
         return;
     }
     emitter.frames = setup.frames;
-    emitter.frame = *setup.frames->find(view.text("frame"));
-    if (!context.failed() && setup.frames->is_scaled(emitter.frame)) {
+    emitter.frame = *frame;
+    if (has_frame && !context.failed() && setup.frames->is_scaled(emitter.frame)) {
         context.error(view, "frame",
                       "the frame is scaled, but particles keep their size; expected a frame without a \"scale\", also "
                       "in the frames that it stands on");
@@ -251,14 +239,9 @@ void check_volume(const SceneContext& context, const ObjectView& view, const Emi
 }  // namespace
 
 const ObjectSpec& emitter_spec() {
-    static const ObjectSpec spec = [] {
-        ObjectSpec result =
-            object("emitter", "A source of particles. A pair [mean, spread] is drawn anew for every particle.",
-                   joined({schedule_fields(), launch_fields()}), emitter_shapes());
-        result.keys.insert(result.keys.begin(), emitter_name());
-        for (KeySpec& key : emitter_look_keys()) result.keys.push_back(std::move(key));
-        return result;
-    }();
+    static const ObjectSpec spec =
+        object("emitter", "A source of particles. A pair [mean, spread] is drawn anew for every particle.",
+               joined({schedule_fields(), launch_fields(), emitter_look_fields()}), emitter_shapes());
     return spec;
 }
 

@@ -1,7 +1,6 @@
 /// \file
-/// Scene keys bound to the members that they set. One line of a table contains the name, member, range, unit and
-/// meaning of a key. The checker, the reader, the JSON Schema and the reference in docs/ are all derived from these
-/// tables. Type and default follow from the member:
+/// Scene keys bound to the members that they set. The checker, the reader, the JSON Schema and the reference in docs/
+/// are all derived from these tables. Type and default follow from the member:
 ///
 ///     {"density", &BodyKeys::density, kPositive, "kg/m^3", "Mass per volume."}
 ///
@@ -29,8 +28,7 @@ template <class Member>
 concept Enumeration = std::is_enum_v<Member>;
 
 /// Format of members of one type in a scene. read() converts a checked value. text() returns the JSON text of a
-/// default. The text is empty if a scene cannot express the default: an infinite number, an absent value, or an empty
-/// text. This general template is for structs whose members are set by the keys of KeySpec::content.
+/// default; empty if a scene cannot express it. This general template is for structs with the keys KeySpec::content.
 template <class Member>
 struct Format {
     static constexpr ValueType kType = ValueType::object;
@@ -113,7 +111,7 @@ struct Format<std::vector<Member>> {
 
 // Options of a table line, in addition to name, member, range, unit and meaning.
 
-enum class Rule { required, not_zero, not_empty, two_or_more };
+enum class Rule { none, required, not_zero, not_empty, two_or_more };
 inline constexpr Rule kRequired = Rule::required;
 inline constexpr Rule kNotZero = Rule::not_zero;
 inline constexpr Rule kNotEmpty = Rule::not_empty;
@@ -128,9 +126,6 @@ struct Unit {
 /// Description of the expected text, for messages and the reference.
 struct Expected {
     std::string_view words;
-};
-struct Presence {
-    bool is_required = false;
 };
 /// Key that must also be present.
 struct Needs {
@@ -148,7 +143,6 @@ using Choices = std::vector<Choice>;
 
 void set_option(KeySpec& key, Rule rule);
 inline void set_option(KeySpec& key, Without without) { key.without = without.words; }
-inline void set_option(KeySpec& key, Presence presence) { key.required = presence.is_required; }
 inline void set_option(KeySpec& key, Unit unit) { key.unit = unit.name; }
 inline void set_option(KeySpec& key, Expected expected) { key.expected = expected.words; }
 inline void set_option(KeySpec& key, Needs needs) { key.needs = needs.key; }
@@ -164,8 +158,8 @@ inline void set_option(KeySpec& key, Choices choices) {
 template <class Member, class Struct>
 concept MemberOf = std::invocable<Member, Struct&>;
 
-/// One line of the table of a struct. It binds a key to a member. `member` is a pointer to the member or a function
-/// that returns it. A line can also describe a key without a member, which the builder of the object reads.
+/// One line of the table of a struct. `member` is a pointer to the member or a function that returns it. A line can
+/// also describe a key without a member, which the builder of the object reads.
 template <class Struct>
 struct Field : KeySpec {
     template <MemberOf<Struct> Member, class... Options>
@@ -220,8 +214,7 @@ private:
 template <class Struct>
 using Fields = std::vector<Field<Struct>>;
 
-/// Returns the keys of a table of settings for a part of a struct. part_of: function that returns this part. options:
-/// apply to all keys.
+/// Returns the keys of a table of settings for the part of a struct that part_of() returns. options: apply to all keys.
 template <class Struct>
 [[nodiscard]] Fields<Struct> fields_of_part(auto part_of, const auto& table, auto... options) {
     Fields<Struct> fields;
@@ -229,7 +222,7 @@ template <class Struct>
         const auto add = [&](auto member) {
             const auto value_of = [=](Struct & object) -> auto& { return std::invoke(part_of, object).*member; };
             fields.push_back({line.name, value_of, line.range, line.unit, line.meaning, Without{line.without},
-                              Presence{line.is_required}, Needs{line.needs}, options...});
+                              line.is_required ? kRequired : Rule::none, Needs{line.needs}, options...});
         };
         std::visit(add, line.member);
     }

@@ -20,8 +20,6 @@
 
 namespace ricochet::detail {
 
-// Files and meshes.
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,6 +37,15 @@ std::string nearest_file(const fs::path& path) {
     std::sort(nearest.begin(), nearest.end());
     if (nearest.size() > 3) nearest.resize(3);
     return did_you_mean(nearest);
+}
+
+// Returns the names of a group in order of priority.
+std::vector<std::string_view> names_of(const MeshGroups& mesh, const FaceGroup& group) {
+    std::vector<std::string_view> names = {mesh.names[group.material], mesh.names[group.group]};
+    const std::vector<std::string_view> words = words_of(mesh.names[group.group]);
+    if (words.size() > 1) names.insert(names.end(), words.begin(), words.end());
+    names.emplace_back(mesh.names[group.object]);
+    return names;
 }
 
 }  // namespace
@@ -90,60 +97,37 @@ void add_bytes(StateHash& hash, const fs::path& path) {
     hash.add(size);
 }
 
-namespace {
-
-// Returns the mesh with the other upward axis. to_z_up: true to convert from y up to z up, false for the reverse.
-std::shared_ptr<const TriangleMesh> turned_mesh(TriangleMesh mesh, bool to_z_up) {
-    for (Vec3& v : mesh.vertices) v = to_z_up ? y_up_as_z_up(v) : z_up_as_y_up(v);
-    return std::make_shared<const TriangleMesh>(std::move(mesh));
-}
-
-}  // namespace
-
-MeshLibrary::Entry& MeshLibrary::entry(const fs::path& path) {
+MeshFile& MeshLibrary::file(const fs::path& path) {
     std::error_code ignored;
-    const auto [found, is_new] = entries_.try_emplace(fs::weakly_canonical(path, ignored));
-    Entry& entry = found->second;
+    const auto [found, is_new] = files_.try_emplace(fs::weakly_canonical(path, ignored));
+    MeshFile& file = found->second;
     if (is_new) {
         try {
             if (const auto problem = file_problem(path)) throw InputError(*problem);
             ImportedMesh imported = read_mesh(path, MeshContent::triangles);
-            entry.groups = groups_of(imported);
-            entry.is_y_up = imported.y_up;
-            entry.notes = std::move(imported.notes);
-            entry.files = std::move(imported.files);
-            entry.mesh = std::make_shared<const TriangleMesh>(std::move(imported.mesh));
+            file.groups = groups_of(imported);
+            file.is_y_up = imported.y_up;
+            file.notes = std::move(imported.notes);
+            file.files = std::move(imported.files);
+            file.mesh = std::make_shared<const TriangleMesh>(std::move(imported.mesh));
         } catch (const InputError& error) {
-            entry.error = error.what();
+            file.error = error.what();
         }
     }
-    if (!entry.mesh) throw InputError(entry.error);
-    return entry;
+    if (!file.mesh) throw InputError(file.error);
+    return file;
 }
 
 std::shared_ptr<const TriangleMesh> MeshLibrary::load(const fs::path& path, MeshUp up) {
-    Entry& found = entry(path);
+    MeshFile& found = file(path);
     if (up == MeshUp::by_format || (up == MeshUp::y) == found.is_y_up) return found.mesh;
-    if (!found.turned) found.turned = turned_mesh(*found.mesh, up == MeshUp::y);
+    if (!found.turned) {
+        TriangleMesh mesh = *found.mesh;
+        for (Vec3& v : mesh.vertices) v = up == MeshUp::y ? y_up_as_z_up(v) : z_up_as_y_up(v);
+        found.turned = std::make_shared<const TriangleMesh>(std::move(mesh));
+    }
     return found.turned;
 }
-
-const MeshGroups& MeshLibrary::groups(const fs::path& path) { return entry(path).groups; }
-
-// Groups of a mesh.
-
-namespace {
-
-// Returns the names of a group in order of priority.
-std::vector<std::string_view> names_of(const MeshGroups& mesh, const FaceGroup& group) {
-    std::vector<std::string_view> names = {mesh.names[group.material], mesh.names[group.group]};
-    const std::vector<std::string_view> words = words_of(mesh.names[group.group]);
-    if (words.size() > 1) names.insert(names.end(), words.begin(), words.end());
-    names.emplace_back(mesh.names[group.object]);
-    return names;
-}
-
-}  // namespace
 
 std::vector<std::string_view> MeshGroups::all_names() const {
     std::vector<std::string_view> all;

@@ -2,7 +2,6 @@
 /// Files of a scene: checks of their paths, meshes, and the groups of a mesh with their materials.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -30,8 +29,8 @@ struct MeshGroups {
     [[nodiscard]] bool format_has_groups() const {
         return format == "OBJ" || format == "STL, ASCII" || format.starts_with("glTF");
     }
-    /// Returns every name that can select a triangle, in order of first use. These are the names of materials, groups
-    /// and objects. If a group name has several words, each word is also a name.
+    /// Returns every name that can select a triangle, in order of first use: the names of materials, groups and
+    /// objects, and each word of a group name.
     [[nodiscard]] std::vector<std::string_view> all_names() const;
 };
 
@@ -42,10 +41,8 @@ struct MeshGroups {
 
 /// Materials that a scene assigns to names of a mesh file.
 struct NamedMaterials {
-    /// Material index for each name.
-    std::map<std::string, std::uint32_t, std::less<>> materials;
-    /// Material index of triangles whose group has no name in `materials`.
-    std::uint32_t otherwise = 0;
+    std::map<std::string, std::uint32_t, std::less<>> materials;  ///< material index for each name
+    std::uint32_t otherwise = 0;  ///< material index of triangles without a name in `materials`
 };
 
 /// Materials of all triangles of a mesh.
@@ -58,8 +55,7 @@ struct TriangleMaterials {
 /// triangle's material in the file, the whole group name, each word of the group name, and the object name.
 [[nodiscard]] TriangleMaterials materials_by_group(const MeshGroups& groups, const NamedMaterials& named);
 
-/// Returns the reason why a path is not a readable regular file, with similar file names in the same folder. Returns
-/// nothing if the file is readable.
+/// Returns the reason why a path is not a readable regular file, with similar file names in the same folder.
 [[nodiscard]] std::optional<std::string> file_problem(const std::filesystem::path& path);
 
 /// Returns the bytes of a file. Throws InputError if the file cannot be read, or if its size exceeds `largest` or the
@@ -76,36 +72,27 @@ enum class MeshUp : std::uint8_t {
     y,
 };
 
+/// Contents of a mesh file.
+struct MeshFile {
+    std::shared_ptr<const TriangleMesh> mesh;    ///< with the upward axis of the format turned to z
+    std::shared_ptr<const TriangleMesh> turned;  ///< mesh with the other upward axis; made on first use
+    bool is_y_up = false;                        ///< y is the upward axis of the file's format
+    MeshGroups groups;
+    std::vector<std::string> notes;            ///< notes on contents that were not read, one sentence each
+    std::vector<std::filesystem::path> files;  ///< other files that were read together with this file
+    std::string error;                         ///< message of the reader if the file could not be read
+};
+
 /// Cache of meshes by file. Each file is read only once.
 class MeshLibrary {
 public:
-    /// Returns the mesh of a file with z up. Throws InputError with the message of the mesh reader. up: upward axis of
-    /// the file.
+    /// Returns the contents of a file. Throws InputError with the message of the mesh reader.
+    [[nodiscard]] MeshFile& file(const std::filesystem::path& path);
+    /// Returns the mesh of a file with z up. up: upward axis of the file. Throws like file().
     [[nodiscard]] std::shared_ptr<const TriangleMesh> load(const std::filesystem::path& path, MeshUp up);
-    /// Returns true if y is the upward axis of the file's format. Throws InputError like load().
-    [[nodiscard]] bool is_y_up(const std::filesystem::path& path) { return entry(path).is_y_up; }
-    /// Returns notes on contents of the file that were not read, one sentence each. Throws InputError like load().
-    [[nodiscard]] const std::vector<std::string>& notes(const std::filesystem::path& path) { return entry(path).notes; }
-    /// Returns the other files that were read together with this file. Throws InputError like load().
-    [[nodiscard]] const std::vector<std::filesystem::path>& files(const std::filesystem::path& path) {
-        return entry(path).files;
-    }
-    /// Returns the groups that the file defines. Throws InputError like load().
-    [[nodiscard]] const MeshGroups& groups(const std::filesystem::path& path);
 
 private:
-    struct Entry {
-        std::shared_ptr<const TriangleMesh> mesh;
-        std::shared_ptr<const TriangleMesh> turned;  ///< mesh with the other upward axis; made on first use
-        bool is_y_up = false;
-        MeshGroups groups;
-        std::vector<std::string> notes;
-        std::vector<std::filesystem::path> files;
-        std::string error;  ///< message of the reader if the file could not be read
-    };
-    [[nodiscard]] Entry& entry(const std::filesystem::path& path);
-
-    std::map<std::filesystem::path, Entry> entries_;
+    std::map<std::filesystem::path, MeshFile> files_;
 };
 
 }  // namespace ricochet::detail

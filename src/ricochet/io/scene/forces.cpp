@@ -295,15 +295,17 @@ void warn_of_forces_on_nobody(const SceneContext& context, const SimulationSetup
     }
 }
 
-void warn_of_forces_without_radius(const SceneContext& context, const SimulationSetup& setup) {
+bool has_only_points(const SimulationSetup& setup) {
     const auto is_point = [](const Particle& particle) { return particle.radius == 0.0; };
     const auto emits_points = [](const EmitterDescription& emitter) {
         return emitter.radius.mean == 0.0 && emitter.radius.spread == 0.0;
     };
-    if (!std::all_of(setup.particles.begin(), setup.particles.end(), is_point) ||
-        !std::all_of(setup.emitters.begin(), setup.emitters.end(), emits_points)) {
-        return;
-    }
+    return std::all_of(setup.particles.begin(), setup.particles.end(), is_point) &&
+           std::all_of(setup.emitters.begin(), setup.emitters.end(), emits_points);
+}
+
+void warn_of_forces_without_radius(const SceneContext& context, const SimulationSetup& setup) {
+    if (!has_only_points(setup)) return;
     for (const ObjectView& view : context.objects("forces")) {
         if (!grows_with_radius(view)) continue;
         context.warn(view, "type",

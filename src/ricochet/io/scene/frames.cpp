@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 #include <string_view>
 #include <unordered_set>
 #include <utility>
@@ -50,14 +49,14 @@ Fields<CurveKeys<Value>> curve_fields(const ObjectSpec& key_spec) {
                             "the keys repeat, and each round starts with the last value of the previous one")}}};
 }
 
-// Returns true if the times of the keys increase. Otherwise reports the first wrong time. The tables of keys cannot
-// express this rule.
-bool are_good_keys(const std::vector<ObjectView>& keys, Diagnostics& diagnostics, bool has_values = true) {
+// Returns true if the keys are complete and their times increase. Reports the first wrong time. The tables of keys
+// cannot express this rule.
+bool are_good_keys(const std::vector<ObjectView>& keys, Diagnostics& diagnostics) {
     bool good = !keys.empty();
     double before = 0.0;
     for (const ObjectView& key : keys) {
         const double time = key.node("time").number().value_or(0.0);
-        good = good && key.has("time") && (!has_values || key.has("value"));
+        good = good && key.is_complete();
         if (&key != &keys.front() && good && !(before < time)) {
             diagnostics.error(
                 key.location_of("time"), key.path_of("time"),
@@ -91,20 +90,6 @@ KeyedCurve<Vec3> scale_curve_of(const ObjectView& view, Diagnostics& diagnostics
 struct ScaledPose : KeyPose {
     Vec3 scale{1, 1, 1};
 };
-
-bool has_scale(const std::vector<ObjectView>& poses) {
-    return std::any_of(poses.begin(), poses.end(), [](const ObjectView& view) { return view.has("scale"); });
-}
-
-// Returns the curve of the poses' scale factors along the frame's axes.
-KeyedCurve<Vec3> scale_through(const std::vector<ObjectView>& poses) {
-    std::vector<CurveKey<Vec3>> keys;
-    for (const ObjectView& view : poses) {
-        const auto pose = view.read<ScaledPose>();
-        keys.push_back({pose.time, pose.scale});
-    }
-    return KeyedCurve<Vec3>(std::move(keys));
-}
 
 const ObjectSpec& motion_spec() {
     using Turn = KeyedRotation;
@@ -293,11 +278,19 @@ const ObjectSpec& key_pose_spec() {
 FrameDescription frame_through(const std::vector<ObjectView>& views, Diagnostics& diagnostics) {
     FrameDescription frame;
     std::vector<KeyPose> poses;
-    if (!are_good_keys(views, diagnostics, false)) return frame;
-    for (const ObjectView& view : views) poses.push_back(view.read<ScaledPose>());
+    std::vector<CurveKey<Vec3>> scales;  // factors along the frame's axes
+    if (!are_good_keys(views, diagnostics)) return frame;
+    for (const ObjectView& view : views) {
+        const auto pose = view.read<ScaledPose>();
+        poses.push_back(pose);
+        scales.push_back({pose.time, pose.scale});
+    }
+    const auto has_scale = [](const ObjectView& view) { return view.has("scale"); };
     try {
         frame.motions = motions_through(poses);
-        if (has_scale(views)) frame.motions.emplace_back(KeyedScale{scale_through(views)});
+        if (std::any_of(views.begin(), views.end(), has_scale)) {
+            frame.motions.emplace_back(KeyedScale{KeyedCurve<Vec3>(std::move(scales))});
+        }
     } catch (const InputError& problem) {
         diagnostics.error(views.front().location(), views.front().path(), problem.what());
     }

@@ -25,23 +25,6 @@ const ObjectSpec& convection_spec() {
     return spec;
 }
 
-}  // namespace
-
-const ObjectSpec& heat_spec() {
-    using H = HeatSettings;
-    static const ObjectSpec spec = object<H>(
-        "heat",
-        "Processes that change the attribute `temperature` (K) of all particles. The attribute must be declared. The "
-        "temperature is uniform inside a particle.",
-        joined<H>(
-            {fields_of<H>(kHeatTable),
-             {{"convection", &H::convection, "Heat exchange with the medium.", &convection_spec(), Without{"none"}}},
-             fields_of<H>(kHeatFractionTable)}));
-    return spec;
-}
-
-namespace {
-
 /// Removes "heat: " from the start of a message, because the report already contains the path of the key.
 std::string without_own_name(std::string message) {
     constexpr std::string_view kName = "heat: ";
@@ -57,6 +40,19 @@ FlowPointer flow_of(const SceneContext& context, const ForceBuilder& forces, con
 }
 
 }  // namespace
+
+const ObjectSpec& heat_spec() {
+    using H = HeatSettings;
+    static const ObjectSpec spec = object<H>(
+        "heat",
+        "Processes that change the attribute `temperature` (K) of all particles. The attribute must be declared. The "
+        "temperature is uniform inside a particle.",
+        joined<H>(
+            {fields_of<H>(kHeatTable),
+             {{"convection", &H::convection, "Heat exchange with the medium.", &convection_spec(), Without{"none"}}},
+             fields_of<H>(kHeatFractionTable)}));
+    return spec;
+}
 
 void build_heat(const SceneContext& context, const ForceBuilder& forces, SimulationSetup& setup) {
     if (!context.failed()) {

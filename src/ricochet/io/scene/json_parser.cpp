@@ -9,7 +9,6 @@
 
 #include "ricochet/core/printable.h"
 #include "ricochet/io/scene/diagnostics.h"
-#include "ricochet/io/scene/json_hint.h"
 
 namespace ricochet::detail {
 
@@ -17,75 +16,121 @@ namespace {
 
 using Json = nlohmann::json;
 
-bool is_delimiter(char c) { return std::string_view(" \t\r\n,:[]{}\"/").find(c) != std::string_view::npos; }
+constexpr std::string_view kSpace = " \t\r\n";
+constexpr std::string_view kMarks = "{}[],:";
+constexpr std::size_t kLongestToken = 40;
+
+// Number of bytes of the byte order mark that some editors write.
+std::size_t start_of(std::string_view text) { return text.starts_with("\xEF\xBB\xBF") ? 3 : 0; }
+
+struct Token {
+    std::size_t begin = 0;
+    std::string_view text;
+
+    [[nodiscard]] std::size_t end() const { return begin + text.size(); }
+    [[nodiscard]] bool is_one_of(std::string_view marks) const {
+        return text.size() == 1 && marks.find(text.front()) != std::string_view::npos;
+    }
+};
+
+std::size_t end_of_comment(std::string_view text, std::size_t at) {
+    const bool to_line_end = text.substr(at).starts_with("//");
+    const std::size_t end = to_line_end ? text.find('\n', at) : text.find("*/", at + 2);
+    return end == std::string_view::npos ? text.size() : end + (to_line_end ? 1 : 2);
+}
+
+std::size_t end_of_string(std::string_view text, std::size_t at) {
+    for (++at; at < text.size() && text[at] != '"'; ++at) {
+        if (text[at] == '\\') ++at;
+    }
+    return std::min(at + 1, text.size());
+}
+
+// Returns the token at an offset, or the next token after it. Punctuation marks are also tokens. The result is empty at
+// the end of the text.
+Token token_from(std::string_view text, std::size_t at) {
+    while (at < text.size()) {
+        if (text[at] == '/') {
+            at = end_of_comment(text, at);
+        } else if (kSpace.find(text[at]) != std::string_view::npos) {
+            ++at;
+        } else {
+            break;
+        }
+    }
+    if (at >= text.size()) return {text.size(), {}};
+    std::size_t end = at + 1;
+    if (text[at] == '"') {
+        end = end_of_string(text, at);
+    } else if (kMarks.find(text[at]) == std::string_view::npos) {
+        end = std::min(text.find_first_of(" \t\r\n{}[],:\"/", at + 1), text.size());
+    }
+    return {at, text.substr(at, end - at)};
+}
+
+// Moves a location to the end of the text that follows it.
+void move_past(std::string_view text, SourceLocation& location) {
+    for (const char c : text) {
+        if (c == '\n') {
+            ++location.line;
+            location.column = 1;
+        } else if ((static_cast<unsigned char>(c) & 0xC0U) != 0x80U) {  // first byte of a UTF-8 character
+            ++location.column;
+        }
+    }
+}
 
 // Finds the locations of the parser's events, which have no locations themselves. Every event corresponds to one token
-// of the text.
+// of the text, except commas and colons.
 class TokenLocations {
 public:
-    explicit TokenLocations(std::string_view text) : text_(text) {
-        if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
-    }
+    explicit TokenLocations(std::string_view text) : text_(text.substr(start_of(text))) {}
 
     SourceLocation next() {
-        skip_between_tokens();
-        const SourceLocation location{line_, column_};
-        skip_token();
-        return location;
+        Token token = token_from(text_, end_);
+        while (token.is_one_of(",:")) token = token_from(text_, token.end());
+        move_past(text_.substr(begin_, token.begin - begin_), location_);
+        begin_ = token.begin;
+        end_ = token.end();
+        return location_;
     }
 
 private:
-    [[nodiscard]] bool at_end() const { return at_ >= text_.size(); }
-
-    void advance() {
-        const char c = text_[at_++];
-        if (c == '\n') {
-            ++line_;
-            column_ = 1;
-        } else if ((static_cast<unsigned char>(c) & 0xC0U) != 0x80U) {  // first byte of a UTF-8 character
-            ++column_;
-        }
-    }
-
-    void skip_comment() {
-        const bool to_line_end = text_.substr(at_).starts_with("//");
-        const std::size_t found = to_line_end ? text_.find('\n', at_) : text_.find("*/", at_ + 2);
-        const std::size_t end = found == std::string_view::npos ? text_.size() : found + (to_line_end ? 1 : 2);
-        while (at_ < end) advance();
-    }
-
-    void skip_between_tokens() {
-        while (!at_end()) {
-            if (text_[at_] == '/') {
-                skip_comment();
-            } else if (std::string_view(" \t\r\n,:").find(text_[at_]) != std::string_view::npos) {
-                advance();
-            } else {
-                return;
-            }
-        }
-    }
-
-    void skip_token() {
-        if (at_end()) return;
-        const char first = text_[at_];
-        advance();
-        if (first == '"') {
-            while (!at_end() && text_[at_] != '"') {
-                if (text_[at_] == '\\') advance();
-                if (!at_end()) advance();
-            }
-            if (!at_end()) advance();
-        } else if (!is_delimiter(first)) {
-            while (!at_end() && !is_delimiter(text_[at_])) advance();
-        }
-    }
-
     std::string_view text_;
-    std::size_t at_ = 0;
-    std::uint32_t line_ = 1;
-    std::uint32_t column_ = 1;
+    SourceLocation location_{1, 1};
+    std::size_t begin_ = 0;  // offset of location_
+    std::size_t end_ = 0;    // offset of the end of the last token
 };
+
+// Hint for a common typing error.
+struct Hint {
+    std::size_t position = 0;  // offset in the text, in bytes
+    std::string text;
+};
+
+std::string shown(const Token& token) {
+    const std::string text = printable(std::string(token.text), kLongestToken);
+    return token.text.front() == '"' ? text : "'" + text + "'";
+}
+
+// Returns a hint for a missing comma or colon, or for a superfluous comma. Returns nothing for other errors. position:
+// number of bytes that the parser had read when it stopped. message: error message of the parser.
+std::optional<Hint> hint_for(std::string_view text, std::size_t position, std::string_view message) {
+    Token before;
+    Token token = token_from(text, start_of(text));
+    while (!token.text.empty() && token.end() < position) {
+        before = token;
+        token = token_from(text, token.end());
+    }
+    const auto says = [&](std::string_view words) { return message.find(words) != std::string_view::npos; };
+    if (token.text.empty() || before.text.empty() || !says(" - unexpected ")) return std::nullopt;
+    if (token.is_one_of("}]") && before.is_one_of(",")) {
+        return Hint{before.begin, fmt::format("take the last comma before {} away", shown(token))};
+    }
+    if (token.is_one_of(",:}]") || before.is_one_of(",:{[") || says("expected end of input")) return std::nullopt;
+    const char* const mark = says("object separator") ? "colon" : "comma";
+    return Hint{token.begin, fmt::format("a {} is missing before {}", mark, shown(token))};
+}
 
 // Returns the message of the JSON library without its prefix and location.
 std::string plain_message(std::string message) {
@@ -124,7 +169,7 @@ public:
     bool end_array() override { return close(); }
 
     bool parse_error(std::size_t position, const std::string& /*token*/, const Json::exception& error) override {
-        const std::optional<JsonHint> hint = json_hint(text_, position, error.what());
+        const std::optional<Hint> hint = hint_for(text_, position, error.what());
         const SourceLocation location = location_of_byte(hint ? hint->position + 1 : position);
         diagnostics_.error(location, "", "not valid JSON: " + (hint ? hint->text : plain_message(error.what())));
         return false;
@@ -224,15 +269,9 @@ private:
 
     [[nodiscard]] SourceLocation location_of_byte(std::size_t position) const {
         SourceLocation location{1, 1};
+        const std::size_t start = start_of(text_);
         const std::size_t end = std::min(position == 0 ? 0 : position - 1, text_.size());
-        for (std::size_t i = text_.starts_with("\xEF\xBB\xBF") ? 3 : 0; i < end; ++i) {
-            if (text_[i] == '\n') {
-                ++location.line;
-                location.column = 1;
-            } else if ((static_cast<unsigned char>(text_[i]) & 0xC0U) != 0x80U) {
-                ++location.column;
-            }
-        }
+        if (end > start) move_past(text_.substr(start, end - start), location);
         return location;
     }
 

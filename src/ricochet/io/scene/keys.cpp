@@ -15,6 +15,13 @@ namespace {
 
 const JsonNode kAbsent{};
 
+// Returns the entry with a name, or a null pointer.
+template <class Entry>
+const Entry* find_named(const std::vector<Entry>& entries, std::string_view name) {
+    const auto found = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.name == name; });
+    return found == entries.end() ? nullptr : &*found;
+}
+
 std::string number_words(const KeySpec& key, std::string_view noun) {
     std::string words(noun);
     if (key.range.lower == key.range.upper) return fmt::format("{}", key.range.lower);
@@ -54,28 +61,15 @@ std::vector<const KeySpec*> keys_of(const ObjectSpec& object, const Variant* var
     return keys;
 }
 
-const Variant* find_variant(const ObjectSpec& object, std::string_view name) {
-    for (const Variant& variant : object.variants) {
-        if (variant.name == name) return &variant;
-    }
-    return nullptr;
-}
-
 const Variant* variant_of(const JsonNode& node, const ObjectSpec& spec) {
     const JsonNode* type = node.find("type");
     if (type == nullptr || type->text() == nullptr) return nullptr;
-    return find_variant(spec, *type->text());
+    return find_named(spec.variants, *type->text());
 }
 
 const KeySpec* find_key(const ObjectSpec& object, const Variant* variant, std::string_view name) {
-    for (const KeySpec& key : object.keys) {
-        if (key.name == name) return &key;
-    }
-    if (variant == nullptr) return nullptr;
-    for (const KeySpec& key : variant->keys) {
-        if (key.name == name) return &key;
-    }
-    return nullptr;
+    const KeySpec* common = find_named(object.keys, name);
+    return common != nullptr || variant == nullptr ? common : find_named(variant->keys, name);
 }
 
 std::string range_words(const Range& range) {
@@ -137,10 +131,6 @@ std::string expectation(const KeySpec& key) {
     return "";
 }
 
-std::string unsupported_message(const std::string& what) {
-    return what + " is part of the scene format but not built in this version";
-}
-
 // Functions that read checked objects.
 
 void read_members(const JsonNode& node, const std::vector<KeySpec>& keys, void* object) {
@@ -156,6 +146,16 @@ ObjectView::ObjectView(const JsonNode& node, const ObjectSpec& spec, std::string
 const JsonNode* ObjectView::value(std::string_view key) const {
     const JsonNode* found = node_->find(key);
     return found == nullptr || found->is_null() ? nullptr : found;
+}
+
+bool ObjectView::is_complete() const {
+    const std::vector<const KeySpec*> keys = keys_of(*spec_, variant_);
+    if (std::any_of(keys.begin(), keys.end(), [&](const KeySpec* key) { return key->required && !has(key->name); })) {
+        return false;
+    }
+    if (variant_ == nullptr || variant_->exactly_one_of.empty()) return true;
+    const auto& names = variant_->exactly_one_of;
+    return std::count_if(names.begin(), names.end(), [&](std::string_view name) { return has(name); }) == 1;
 }
 
 const std::vector<KeySpec>& ObjectView::keys_for(const std::type_info& target) const {

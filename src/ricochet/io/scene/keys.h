@@ -1,10 +1,8 @@
 /// \file
-/// Descriptions of scene keys, the check of a document against them, and access to checked objects. fields.h makes the
-/// descriptions.
+/// Descriptions of scene keys, the check of a document against them, and access to checked objects.
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -75,8 +73,7 @@ struct KeySpec {
     std::vector<Choice> choices = {};
     const ObjectSpec* content = nullptr;
     std::string_view table = {};  ///< for ValueType::named_object: key of the scene with the named objects
-    /// Function that sets the member of an object to a checked value. Empty for keys that the builder of the object
-    /// reads.
+    /// Sets the member of an object to a checked value. Empty for keys that the builder of the object reads.
     std::function<void(void* object, const JsonNode& value)> read = {};
 };
 
@@ -98,10 +95,8 @@ struct ObjectSpec {
     const std::type_info* target = &typeid(void);  ///< type of the struct whose members the keys set
 };
 
-/// Returns the keys of the object, followed by the keys of the variant, in the order of the tables. variant: may be
-/// null.
+/// Returns the keys of the object and of the variant, in the order of the tables. variant: may be null.
 [[nodiscard]] std::vector<const KeySpec*> keys_of(const ObjectSpec& object, const Variant* variant);
-[[nodiscard]] const Variant* find_variant(const ObjectSpec& object, std::string_view name);
 /// Returns the variant for the "type" of a checked object, or a null pointer if there is no such variant.
 [[nodiscard]] const Variant* variant_of(const JsonNode& node, const ObjectSpec& spec);
 [[nodiscard]] const KeySpec* find_key(const ObjectSpec& object, const Variant* variant, std::string_view name);
@@ -110,13 +105,10 @@ struct ObjectSpec {
 [[nodiscard]] std::string expectation(const KeySpec& key);
 /// Returns a range in words, for example `>= 0 and <= 180`. Empty if every finite number is allowed.
 [[nodiscard]] std::string range_words(const Range& range);
-/// Returns the message for a key that the format reserves but this version does not support.
-[[nodiscard]] std::string unsupported_message(const std::string& what);
 
-/// Reports everything in the document that the tables do not allow. These are unknown keys (with the nearest known
-/// names), wrong types, values out of range, missing keys, and reserved features. Replaces every refused value by null.
-/// If an unknown key can be a misspelling of only one known key, it gets the name of this key. Later checks can
-/// therefore read the rest of the document, and no mistake is reported twice.
+/// Reports everything in the document that the tables do not allow, and replaces every refused value by null. If an
+/// unknown key can be a misspelling of only one known key, it gets the name of this key. Later checks can therefore
+/// read the rest of the document, and no mistake is reported twice.
 void check_scene(JsonNode& root, Diagnostics& diagnostics);
 
 /// Sets the members of a struct from a checked JSON object. object: the struct that `keys` belong to.
@@ -124,15 +116,13 @@ void read_members(const JsonNode& node, const std::vector<KeySpec>& keys, void* 
 
 struct NamedObject;
 
-/// Read access to a checked object. Refused values are treated as absent, so structs keep their defaults. These
-/// defaults are never used in a run, because a scene with errors is refused.
+/// Read access to a checked object. Refused values are treated as absent.
 class ObjectView {
 public:
     /// node: an object, or null if all keys are absent. path: path of the object for messages.
     ObjectView(const JsonNode& node, const ObjectSpec& spec, std::string path);
 
-    /// Returns a struct whose members are set by the keys of the object or of its variant. All other members have their
-    /// defaults.
+    /// Returns a struct whose members are set by the keys of the object or of its variant.
     template <class Struct>
     [[nodiscard]] Struct read() const {
         Struct result = Struct();
@@ -148,14 +138,16 @@ public:
     /// Returns true if the object is absent or was refused.
     [[nodiscard]] bool is_absent() const { return node_->object() == nullptr; }
     [[nodiscard]] bool has(std::string_view key) const { return value(key) != nullptr; }
+    /// Returns true if all required keys are present, and exactly one of alternative keys. Other cases have already
+    /// been reported.
+    [[nodiscard]] bool is_complete() const;
     /// Returns the value of a key, or a null node if the key is absent.
     [[nodiscard]] const JsonNode& node(std::string_view key) const;
     /// Returns the text of a key. Empty if the key is absent.
     [[nodiscard]] std::string text(std::string_view key) const;
     [[nodiscard]] ObjectView object(std::string_view key) const;
-    /// Returns the objects of a list.
+    /// Return the objects of a list or of a table.
     [[nodiscard]] std::vector<ObjectView> objects(std::string_view key) const;
-    /// Returns the objects of a table with their names.
     [[nodiscard]] std::vector<NamedObject> named_objects(std::string_view key) const;
 
     /// Returns the name of the variant. Empty if the key "type" was refused.

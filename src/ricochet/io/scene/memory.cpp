@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
-#include <vector>
 
 #include "ricochet/core/memory_limit.h"
 #include "ricochet/io/scene/context.h"

@@ -26,14 +26,11 @@ const ObjectSpec& own_material_spec() {
 }
 
 const ObjectSpec& material_pair_spec() {
-    static const ObjectSpec spec = [] {
-        const Fields<Unbound> names = {{"first", ValueType::text, "Name of a material.", kRequired},
-                                       {"second", ValueType::text, "Name of another material.", kRequired}};
-        ObjectSpec result =
-            object<PairMaterial>("pair of materials", "Contact between spheres of two materials.", material_fields());
-        result.keys.insert(result.keys.begin(), names.begin(), names.end());
-        return result;
-    }();
+    static const ObjectSpec spec = object<PairMaterial>(
+        "pair of materials", "Contact between spheres of two materials.",
+        joined<PairMaterial>({{{"first", ValueType::text, "Name of a material.", kRequired},
+                               {"second", ValueType::text, "Name of another material.", kRequired}},
+                              material_fields()}));
     return spec;
 }
 
@@ -57,8 +54,7 @@ void read_pairs(const SceneContext& context, const ObjectView& view, PairContact
             is_known = false;
             context.error(pair, key, unknown_name("material among particle_contacts.materials", name, known));
         }
-        const bool is_named = !read.first.empty() && !read.second.empty();  // an absent name has already been reported
-        if (!is_known || !is_named) continue;
+        if (!is_known || !pair.is_complete()) continue;
         if (read.first == read.second) {
             context.error(
                 pair, "second",
@@ -83,29 +79,25 @@ void read_pairs(const SceneContext& context, const ObjectView& view, PairContact
 
 const ObjectSpec& particle_contacts_spec() {
     using P = PairContactSettings;
-    static const ObjectSpec spec = [] {
-        ObjectSpec result = object<P>(
-            "particle contacts", "Contacts between spheres.",
-            joined<P>({fields_of<P>(kSphereContactTable<P>),
-                       {{"method", &P::method, "Method that resolves contacts between spheres.",
-                         Choices{choice(PairMethod::automatic, "auto",
-                                        "as `contacts` if spheres press on each other or impacts follow each other "
-                                        "closely, else as `events`"),
-                                 choice(PairMethod::events, "events", "impact by impact, each at its exact time"),
-                                 choice(PairMethod::contacts, "contacts",
-                                        "all contacts of a step at once, with an error of first order in the step, "
-                                        "except for two spheres that meet alone")}}},
-                       fields_of<P>(kPairBudgetTable)}));
-        const Fields<Unbound> materials = {
-            {"materials", ValueType::table,
-             "Materials of spheres by name, with the contact between spheres of the same material. Emitters and "
-             "particles select a material by the key `material`. The column `material` of particles is its number in "
-             "this order.",
-             &own_material_spec(), Without{"all spheres have the same material"}},
-            {"pairs", ValueType::list, "Contacts between spheres of two materials.", &material_pair_spec()}};
-        result.keys.insert(result.keys.end(), materials.begin(), materials.end());
-        return result;
-    }();
+    static const ObjectSpec spec = object<P>(
+        "particle contacts", "Contacts between spheres.",
+        joined<P>(
+            {fields_of<P>(kSphereContactTable<P>),
+             {{"method", &P::method, "Method that resolves contacts between spheres.",
+               Choices{choice(PairMethod::automatic, "auto",
+                              "as `contacts` if spheres press on each other or impacts follow each other closely, else "
+                              "as `events`"),
+                       choice(PairMethod::events, "events", "impact by impact, each at its exact time"),
+                       choice(PairMethod::contacts, "contacts",
+                              "all contacts of a step at once, with an error of first order in the step, except for "
+                              "two spheres that meet alone")}}},
+             fields_of<P>(kPairBudgetTable),
+             {{"materials", ValueType::table,
+               "Materials of spheres by name, with the contact between spheres of the same material. Emitters and "
+               "particles select a material by the key `material`. The column `material` of particles is its number in "
+               "this order.",
+               &own_material_spec(), Without{"all spheres have the same material"}},
+              {"pairs", ValueType::list, "Contacts between spheres of two materials.", &material_pair_spec()}}}));
     return spec;
 }
 
@@ -169,13 +161,8 @@ void check_particle_contacts(const SceneContext& context, const SimulationSetup&
                       "found \"events\" beside springs or forces between particles, expected \"auto\": these press "
                       "spheres together, and \"events\" resolves only single impacts");
     }
-    const auto is_point = [](const Particle& particle) { return particle.radius == 0.0; };
-    const auto emits_points = [](const EmitterDescription& emitter) {
-        return emitter.radius.mean == 0.0 && emitter.radius.spread == 0.0;
-    };
     const bool has_particles = !setup.particles.empty() || !setup.emitters.empty();
-    if (has_particles && std::all_of(setup.particles.begin(), setup.particles.end(), is_point) &&
-        std::all_of(setup.emitters.begin(), setup.emitters.end(), emits_points)) {
+    if (has_particles && has_only_points(setup)) {
         context.warn(context.root(), "particle_contacts",
                      "all particles are points, which never meet: it does nothing; give them a radius");
     }

@@ -10,11 +10,11 @@
 namespace ricochet::detail {
 namespace {
 
-using ForcePointer = std::shared_ptr<const ParticlesForce>;
-using ForceLaw = Law<ForcePointer>;
+using ParticlesForcePointer = std::shared_ptr<const ParticlesForce>;
+using ParticlesForceLaw = Law<ParticlesForcePointer>;
 
 template <class Settings, class Maker>
-ForceLaw law(std::string_view name, std::string_view description, const Fields<Settings>& fields, Maker make) {
+ParticlesForceLaw law(std::string_view name, std::string_view description, const Fields<Settings>& fields, Maker make) {
     return {variant(name, description, fields), [make](const ObjectView& view) { return make(view.read<Settings>()); }};
 }
 
@@ -34,7 +34,7 @@ Fields<Settings> inverse_square_fields() {
              "Smaller values are more exact and slower."}};
 }
 
-ForceLaw gravity() {
+ParticlesForceLaw mutual_gravity() {
     using G = GravitySettings;
     return law<G>(
         "gravity", "Newton's law between all pairs of particles, by their masses.",
@@ -44,7 +44,7 @@ ForceLaw gravity() {
         &make_mutual_gravity);
 }
 
-ForceLaw charge() {
+ParticlesForceLaw charge() {
     using C = ChargeSettings;
     return law<C>("charge", "Coulomb's law between all pairs of particles. Their charge is an attribute.",
                   joined<C>({{{"attribute", &C::attribute,
@@ -55,7 +55,7 @@ ForceLaw charge() {
                   &make_coulomb_force);
 }
 
-ForceLaw lennard_jones() {
+ParticlesForceLaw lennard_jones() {
     using L = LennardJonesSettings;
     return law<L>("lennard_jones",
                   "Force of neutral atoms: repulsion by the 12th and attraction by the 6th power of the distance, with "
@@ -70,7 +70,7 @@ ForceLaw lennard_jones() {
                   &make_lennard_jones);
 }
 
-ForceLaw cohesion() {
+ParticlesForceLaw cohesion() {
     using C = CohesionSettings;
     return law<C>(
         "cohesion",
@@ -82,13 +82,13 @@ ForceLaw cohesion() {
         &make_cohesion);
 }
 
-const std::vector<ForceLaw>& force_laws() {
-    static const std::vector<ForceLaw> laws = {gravity(), charge(), lennard_jones(), cohesion()};
+const std::vector<ParticlesForceLaw>& particles_force_laws() {
+    static const std::vector<ParticlesForceLaw> laws = {mutual_gravity(), charge(), lennard_jones(), cohesion()};
     return laws;
 }
 
 // Keys of every force between particles.
-struct ForceKeys {
+struct ParticlesForceKeys {
     std::vector<std::uint64_t> particles;
     std::string emitter;
 };
@@ -96,7 +96,7 @@ struct ForceKeys {
 void read_emitter(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
                   ParticlesForceEntry& entry) {
     if (!view.has("emitter")) return;
-    const std::string name = view.read<ForceKeys>().emitter;
+    const std::string name = view.read<ParticlesForceKeys>().emitter;
     std::vector<std::string_view> known;
     for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
         known.push_back(setup.emitters[k].name);
@@ -138,25 +138,25 @@ void check_company(const SceneContext& context, const SimulationSetup& setup) {
 }  // namespace
 
 const ObjectSpec& particle_force_spec() {
-    static const ObjectSpec spec = object<ForceKeys>(
+    static const ObjectSpec spec = object<ParticlesForceKeys>(
         "force between particles",
         "A force of particles on each other. Forces add up. It acts between all particles unless `particles` or "
         "`emitter` selects some of them.",
-        {{"particles", &ForceKeys::particles, "Ids of the particles that take part.", Without{"all"}},
-         {"emitter", &ForceKeys::emitter, "Name of an emitter whose particles take part.", Without{"all"}}},
-        variants_of(force_laws()));
+        {{"particles", &ParticlesForceKeys::particles, "Ids of the particles that take part.", Without{"all"}},
+         {"emitter", &ParticlesForceKeys::emitter, "Name of an emitter whose particles take part.", Without{"all"}}},
+        variants_of(particles_force_laws()));
     return spec;
 }
 
 void build_particle_forces(const SceneContext& context, SimulationSetup& setup) {
     check_company(context, setup);
     for (const ObjectView& view : context.objects("particle_forces")) {
-        const ForceLaw* law = law_of(force_laws(), view);
+        const ParticlesForceLaw* law = law_of(particles_force_laws(), view);
         if (law == nullptr) continue;
         ParticlesForceEntry entry;
         entry.force = made(context, view, [&] { return law->make(view); });
         if (!entry.force) continue;
-        if (view.has("particles")) entry.particles = view.read<ForceKeys>().particles;
+        if (view.has("particles")) entry.particles = view.read<ParticlesForceKeys>().particles;
         warn_of_unknown_ids(context, view, setup, entry.particles);
         read_emitter(context, setup, view, entry);
         check_attributes(context, setup, view, *entry.force);

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <set>
 #include <string>
@@ -174,15 +173,12 @@ private:
             const int components = name == cell ? 1 : 3;
             const auto found = std::find_if(table_.attributes.begin(), table_.attributes.end(),
                                             [&](const AttributeDescription& a) { return a.name == name; });
-            const auto look = looks_attribute(name);
-            if (found == table_.attributes.end() && (!look || look->components != components)) continue;
-            if (found == table_.attributes.end()) {
-                table_.attributes.push_back(*look);
-                return AttributeComponent{table_.attributes.size() - 1, components == 3 ? cell.back() - 'x' : 0};
-            }
-            if (found->components != components) continue;
-            return AttributeComponent{static_cast<std::size_t>(found - table_.attributes.begin()),
-                                      components == 3 ? cell.back() - 'x' : 0};
+            const bool is_declared = found != table_.attributes.end();
+            const auto attribute = is_declared ? std::optional(*found) : looks_attribute(name);
+            if (!attribute || attribute->components != components) continue;
+            const auto column = static_cast<std::size_t>(found - table_.attributes.begin());
+            if (!is_declared) table_.attributes.push_back(*attribute);
+            return AttributeComponent{column, components == 3 ? cell.back() - 'x' : 0};
         }
         return std::nullopt;
     }
@@ -240,7 +236,7 @@ private:
     bool read_cell(std::string_view cell, const Column& column, Particle& particle) {
         if (column.target == nullptr) return true;
         if (column.key == "lifetime" && (cell.empty() || cell == "inf")) return true;  // for ever
-        const KeySpec& rules = rules_of(column);
+        const KeySpec& rules = *find_key(particle_spec(), nullptr, column.key);
         const std::optional<double> value = number_of(cell);
         if (!value || !rules.range.contains(*value)) {
             std::string range = range_words(rules.range);
@@ -252,8 +248,6 @@ private:
         column.target(particle) = *value;
         return true;
     }
-
-    static const KeySpec& rules_of(const Column& column) { return *find_key(particle_spec(), nullptr, column.key); }
 
     std::string_view rest_;
     std::string name_;
@@ -297,19 +291,17 @@ void warn_about_particles_outside(const SceneContext& context, const SimulationS
 
 const ObjectSpec& particle_spec() {
     using P = Particle;
-    static const ObjectSpec spec = [] {
-        ObjectSpec result = object<P>(
-            "particle", "A particle that exists from the start.",
-            {{"position", &P::position, kCoordinate, "m", "Position at the start.", kRequired},
-             {"velocity", &P::velocity, kCoordinate, "m/s", "Velocity at the start."},
-             {"mass", &P::mass, kMass, "kg", "Mass of the particle."},
-             {"radius", &P::radius, kLengthOrZero, "m", "Radius of the particle."},
-             {"spin", &P::spin, kCoordinate, "rad/s", "Angular velocity at the start, for particles with a radius."},
-             {"lifetime", &P::lifetime, kNotNegative, "s", "Time after which it is retired.", Without{"for ever"}},
-             {"pinned", &P::pinned, "true: it never moves. Springs can hang on it."}});
-        for (KeySpec& key : particle_look_keys()) result.keys.push_back(std::move(key));
-        return result;
-    }();
+    static const ObjectSpec spec = object<P>(
+        "particle", "A particle that exists from the start.",
+        joined<P>(
+            {{{"position", &P::position, kCoordinate, "m", "Position at the start.", kRequired},
+              {"velocity", &P::velocity, kCoordinate, "m/s", "Velocity at the start."},
+              {"mass", &P::mass, kMass, "kg", "Mass of the particle."},
+              {"radius", &P::radius, kLengthOrZero, "m", "Radius of the particle."},
+              {"spin", &P::spin, kCoordinate, "rad/s", "Angular velocity at the start, for particles with a radius."},
+              {"lifetime", &P::lifetime, kNotNegative, "s", "Time after which it is retired.", Without{"for ever"}},
+              {"pinned", &P::pinned, "true: it never moves. Springs can hang on it."}},
+             particle_look_fields()}));
     return spec;
 }
 
@@ -333,7 +325,10 @@ ParticleTable read_particle_table(const std::filesystem::path& path, std::vector
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
     if (ending == ".ply" || ending == ".vtp") {
-        throw InputError(unsupported_message(fmt::format("a {} file of particles", ending)) + ", expected a .csv file");
+        throw InputError(
+            fmt::format("a {} file of particles is part of the scene format but not built in this version, "
+                        "expected a .csv file",
+                        ending));
     }
     if (ending != ".csv") throw InputError(fmt::format("found {}, expected a .csv file", path.string()));
     const std::string text = read_bytes(path, kLargestTable);

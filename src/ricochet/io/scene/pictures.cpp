@@ -88,40 +88,6 @@ CameraDescription camera_of(const SceneContext& context, const ObjectView& view,
     return camera;
 }
 
-}  // namespace
-
-void refuse_camera_on_target(const SceneContext& context, const ObjectView& view) {
-    context.error(view, view.has("target_path") ? "target_path" : "target",
-                  "the camera stands on its target, expected another point");
-}
-
-const ObjectSpec& camera_spec() {
-    using C = CameraDescription;
-    static const ObjectSpec spec = object<C>(
-        "camera", "Camera of `ricochet render`, unless its options say otherwise.",
-        {{"position", &C::position, kCoordinate, "m", "Position of the camera.", Without{"given by `path`"}},
-         {"target", &C::target, kCoordinate, "m", "Point in the middle of the picture.",
-          Without{"given by `target_path`"}},
-         {"path", ValueType::object, "Instead of `position`: path of the camera, a curve of [x, y, z].", Unit{"m"},
-          Without{"fixed at `position`"}, &vector_curve_spec()},
-         {"target_path", ValueType::object, "Instead of `target`: path of the target, a curve of [x, y, z].", Unit{"m"},
-          Without{"fixed at `target`"}, &vector_curve_spec()},
-         {"frame", &C::frame, "Name of a frame in `frames`. Position, target and `up` are in its coordinates.",
-          Without{"the world"}},
-         {"up", &C::up, kCoordinate, "", "Upward direction in the picture.", kNotZero, Without{"against gravity"}},
-         {"field_of_view", &C::field_of_view_degrees, kFieldOfView, "degrees", kFieldOfViewMeaning},
-         {"focal_length", &C::focal_length, between(1.0, 1400.0), "mm",
-          "Instead of `field_of_view`: focal length of a lens in front of film 24 mm high.",
-          Without{"given by `field_of_view`"}},
-         {"aperture", &C::aperture, kLengthOrZero, "m",
-          "Diameter of the lens. Objects nearer or farther than `focus_distance` blur. With 0 everything is sharp."},
-         {"focus_distance", &C::focus_distance, kLengthOrZero, "m",
-          "Distance along the view at which objects are sharp. 0 means the distance of the target."}});
-    return spec;
-}
-
-namespace {
-
 const ObjectSpec& stretch_spec() {
     using S = StretchDescription;
     static const ObjectSpec spec =
@@ -254,6 +220,36 @@ Fields<P> drawing_fields(const Options&... options) {
 }
 
 }  // namespace
+
+void refuse_camera_on_target(const SceneContext& context, const ObjectView& view) {
+    context.error(view, view.has("target_path") ? "target_path" : "target",
+                  "the camera stands on its target, expected another point");
+}
+
+const ObjectSpec& camera_spec() {
+    using C = CameraDescription;
+    static const ObjectSpec spec = object<C>(
+        "camera", "Camera of `ricochet render`, unless its options say otherwise.",
+        {{"position", &C::position, kCoordinate, "m", "Position of the camera.", Without{"given by `path`"}},
+         {"target", &C::target, kCoordinate, "m", "Point in the middle of the picture.",
+          Without{"given by `target_path`"}},
+         {"path", ValueType::object, "Instead of `position`: path of the camera, a curve of [x, y, z].", Unit{"m"},
+          Without{"fixed at `position`"}, &vector_curve_spec()},
+         {"target_path", ValueType::object, "Instead of `target`: path of the target, a curve of [x, y, z].", Unit{"m"},
+          Without{"fixed at `target`"}, &vector_curve_spec()},
+         {"frame", &C::frame, "Name of a frame in `frames`. Position, target and `up` are in its coordinates.",
+          Without{"the world"}},
+         {"up", &C::up, kCoordinate, "", "Upward direction in the picture.", kNotZero, Without{"against gravity"}},
+         {"field_of_view", &C::field_of_view_degrees, kFieldOfView, "degrees", kFieldOfViewMeaning},
+         {"focal_length", &C::focal_length, between(1.0, 1400.0), "mm",
+          "Instead of `field_of_view`: focal length of a lens in front of film 24 mm high.",
+          Without{"given by `field_of_view`"}},
+         {"aperture", &C::aperture, kLengthOrZero, "m",
+          "Diameter of the lens. Objects nearer or farther than `focus_distance` blur. With 0 everything is sharp."},
+         {"focus_distance", &C::focus_distance, kLengthOrZero, "m",
+          "Distance along the view at which objects are sharp. 0 means the distance of the target."}});
+    return spec;
+}
 
 const ObjectSpec& drawing_spec() {
     static const ObjectSpec spec = object<ParticleDrawingDescription>(

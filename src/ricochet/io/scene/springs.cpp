@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -190,19 +189,10 @@ private:
         return view.type() == "sheet" ? sheet_of(view) : cloth_of(view);
     }
 
-    // Returns true if all `keys` are present, and exactly one of the keys `either` and `other`. Other cases have
-    // already been reported, and must not be reported again by the function that makes the springs.
-    static bool is_complete(const ObjectView& view, std::initializer_list<std::string_view> keys,
-                            std::string_view either, std::string_view other) {
-        return std::all_of(keys.begin(), keys.end(), [&](std::string_view key) { return view.has(key); }) &&
-               view.has(either) != view.has(other);
-    }
-
     SpringBody rope_of(const ObjectView& view) {
         const bool is_chain = view.type() == "chain";
         const std::string_view count = is_chain ? "links" : "nodes";
-        if (!is_complete(view, {"from", "to", "mass", count}, "stiffness", "axial_stiffness")) return {};
-        if (is_chain && !view.has("link_length")) return {};
+        if (!view.is_complete()) return {};
         RopeKeys rope = view.read<RopeKeys>();
         if (is_chain) {
             rope.nodes = rope.links + 1;
@@ -217,10 +207,7 @@ private:
     }
 
     SpringBody sheet_of(const ObjectView& view) {
-        if (!is_complete(view, {"corner", "side_u", "side_v", "cells_u", "cells_v", "stiffness"}, "mass",
-                         "mass_per_area")) {
-            return {};
-        }
+        if (!view.is_complete()) return {};
         const auto sheet = view.read<ClothKeys>();
         const double vertices = (static_cast<double>(sheet.cells_u) + 1.0) * (static_cast<double>(sheet.cells_v) + 1.0);
         if (vertices > kMostVertices) {
@@ -232,7 +219,7 @@ private:
 
     SpringBody cloth_of(const ObjectView& view) {
         const auto mesh = context_.load_mesh(view);
-        if (!mesh || !is_complete(view, {"stiffness"}, "mass", "mass_per_area")) return {};
+        if (!mesh || !view.is_complete()) return {};
         const auto keys = view.read<ClothKeys>();
         const double edges = 1.5 * static_cast<double>(mesh->triangles.size());
         if (!is_room(view, "file", static_cast<double>(mesh->vertices.size()), springs_of(edges, keys))) return {};
@@ -275,7 +262,7 @@ private:
     }
 
     void pin_in_box(const ObjectView& view, const TriangleMesh& mesh, ClothSettings& cloth) const {
-        if (!view.has("lower") || !view.has("upper")) return;
+        if (!view.is_complete()) return;
         const auto box = view.read<Box3>();
         const std::size_t before = cloth.pinned.size();
         for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {

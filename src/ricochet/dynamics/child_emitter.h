@@ -1,8 +1,7 @@
 /// \file
 /// Particles that are born from other particles: their number, birth times and initial states. All functions are pure
 /// functions of the parent and its lineage, so births depend on neither threads nor time steps. Method: the hierarchies
-/// of W. T. Reeves, "Particle Systems", ACM TOG 2(2), 1983, section 2.6. Shares of mass and momentum follow from
-/// conservation.
+/// of W. T. Reeves, "Particle Systems", ACM TOG 2(2), 1983, section 2.6.
 #pragma once
 
 #include <cstdint>
@@ -35,8 +34,7 @@ struct LifeBirths {
 [[nodiscard]] std::uint32_t children_of_event(const Emitter& emitter, const Particle& parent, std::uint32_t event);
 
 /// Makes one child at the parent's position. parent: the parent's state at the birth. The child's velocity is its
-/// launch velocity plus the inherited part of the parent's velocity. Attributes that the emitter does not name are
-/// copied from the parent.
+/// launch velocity plus the inherited part of the parent's. It inherits the attributes that the emitter does not name.
 [[nodiscard]] Particle make_child(const Emitter& emitter, const Particle& parent, std::uint32_t ordinal, double time);
 
 /// Child of a cloud.
@@ -45,22 +43,17 @@ struct CloudChild {
     Vec3 offset;  ///< position relative to the parent, in m
 };
 
-/// Makes one child of a cloud at its target position. The child's velocity is the velocity of the target position plus
-/// its launch velocity. If the test rejects the child, another position is drawn, see Emitter::draw(). Returns nothing
-/// if the test rejects all positions.
+/// Makes one child of a cloud at its target position, with the target's velocity plus its launch velocity. If the test
+/// rejects the child, another position is drawn, see Emitter::draw(). Returns nothing if it rejects all positions.
 [[nodiscard]] std::optional<CloudChild> make_cloud_child(const Emitter& emitter, const Particle& parent,
                                                          std::uint32_t ordinal, double time, const BirthTest& test);
 
-/// Returns the largest number of fragments, at least 1, such that each has at least kSmallestMass. mass: total mass, in
-/// kg.
+/// Returns the largest number of fragments, at least 1, that each have at least kSmallestMass. mass: in total, in kg.
 [[nodiscard]] std::uint32_t most_fragments(double mass);
 
-/// Makes children that share the parent's mass and momentum, all at the parent's position. The drawn masses are
-/// weights. Each child's share of the parent's mass is proportional to its weight. The sum of the masses is exactly the
-/// parent's mass, in any order of summation.
-///
-/// The launch velocities are relative to the common centre of mass, so the sum of the momenta is the parent's momentum
-/// within rounding. The kinetic energy grows by the energy of the launches in the frame of that centre. The cube of a
+/// Makes children that share the parent's mass and momentum, all at the parent's position. The drawn masses are weights
+/// of the shares. The sum of the masses is exactly the parent's mass, in any order of summation. The launch velocities
+/// are relative to the common centre of mass, so the sum of the momenta is the parent's within rounding. The cube of a
 /// fragment's radius is proportional to its mass. 1 <= count <= most_fragments() of the parent's mass.
 [[nodiscard]] std::vector<Particle> make_fragments(const Emitter& emitter, const Particle& parent, std::uint32_t count,
                                                    std::uint32_t first_ordinal, double time);

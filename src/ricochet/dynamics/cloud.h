@@ -16,9 +16,9 @@ namespace ricochet {
 /// Returns the largest phase angle, in rad, of the cloud's rotation, oscillation and damping in `duration` seconds.
 [[nodiscard]] double cloud_turn(const CloudRule& rule, double duration);
 
-/// Motion of a child of a cloud while its parent flies along one path. As a coupling, this class provides the
-/// acceleration of the child's target position in the world, plus the acceleration towards the target. The offset d
-/// from the target obeys d'' = -pull d - damping d', which is solved in closed form.
+/// Motion of a child of a cloud while its parent flies along one path. As a coupling, it provides the acceleration of
+/// the child's target, plus that towards the target. The offset d from the target obeys d'' = -pull d - damping d',
+/// which is solved in closed form.
 class CloudMember final : public Coupling {
 public:
     /// parent: path of the parent. begin: start time of that path, in s. offset: target position relative to the parent

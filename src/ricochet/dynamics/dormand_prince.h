@@ -15,9 +15,8 @@ namespace ricochet {
 
 inline constexpr std::size_t kDormandPrinceStages = 7;
 
-/// Error, relative to the tolerance, below which a step of twice the length is expected to succeed. Doubling the step
-/// multiplies the error of the fifth-order method by 32 and the path error, of fourth order, by 16. Local, because only
-/// the cost depends on this value.
+/// Error, relative to the tolerance, below which a step of twice the length is expected to succeed. It multiplies the
+/// error of the fifth-order method by 32 and the path error by 16. Local, because only the cost depends on this value.
 inline constexpr double kErrorToDouble = 1.0 / 64.0;
 
 /// Return entries of the published tableau: the weight of stage j's derivative in stage i, and the time of stage i as a
@@ -30,15 +29,13 @@ struct StepErrors {
     double position = 0.0;  ///< estimate in m, from the embedded fourth-order method
     double velocity = 0.0;  ///< in m/s
     /// Estimated largest distance, in m, between the trajectory and the cubic through its end states: h^4 / 384 times
-    /// the fourth derivative of the position. The derivative comes from a divided difference of the stages'
-    /// accelerations.
+    /// the fourth derivative of the position, from a divided difference of the stages' accelerations.
     double path = 0.0;
 };
 /// Estimates the errors from the velocities and accelerations of all stages of one particle.
 [[nodiscard]] StepErrors estimated_errors(const std::array<Vec3, kDormandPrinceStages>& v,
                                           const std::array<Vec3, kDormandPrinceStages>& a, double h);
-/// Returns the larger of the tolerance and the rounding of the state. No method can meet a tolerance below this
-/// rounding.
+/// Returns the larger of the tolerance and the rounding of the state, below which no method can meet a tolerance.
 [[nodiscard]] ErrorTolerance attainable(const ErrorTolerance& tolerance, const Vec3& position, const Vec3& velocity);
 
 /// Returns the largest of the errors, each relative to its tolerance.

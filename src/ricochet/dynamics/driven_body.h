@@ -1,12 +1,11 @@
 /// \file
-/// A rigid body that is moved by forces and impulses. The body is free, or it moves on an axis or a straight guide that
-/// is fixed in the world.
+/// A rigid body that is moved by forces and impulses. The body is free, or moves on an axis or a straight guide that is
+/// fixed in the world.
 ///
 /// The spring and damper of a joint are integrated in closed form. For all other forces the acceleration varies
-/// linearly over the step (N. M. Newmark, "A method of computation for structural dynamics", J. Eng. Mech. Div. ASCE
-/// 85, 1959). This method is of second order. A free body conserves its angular momentum to rounding. It turns with the
-/// angular velocity in the middle of the step (S. R. Buss, "Accurate and efficient simulation of rigid-body rotations",
-/// J. Comput. Phys. 164, 2000).
+/// linearly over the step, a method of second order (N. M. Newmark, "A method of computation for structural dynamics",
+/// J. Eng. Mech. Div. ASCE 85, 1959). A free body conserves its angular momentum to rounding. It turns with the angular
+/// velocity in the middle of the step (S. R. Buss, J. Comput. Phys. 164, 2000).
 #pragma once
 
 #include <optional>
@@ -69,9 +68,8 @@ public:
     /// Returns the path over the interval [begin, end], in s, under all forces and a steady load, without impulses. The
     /// load is a force, in N, and a moment about moment_center(), in N m.
     [[nodiscard]] BodyPath plan(const ForceField& forces, const Wrench& load, double begin, double end) const;
-    /// Moves the body to the end of a path that was planned with `load`. Applies there the impulses that the body
-    /// received during the path. wrench: sum of all impulses, including the load, about moment_center(). The impulses
-    /// of particles have lever arms to the positions of their impacts.
+    /// Moves the body to the end of a path that was planned with `load`, and applies the impulses received during the
+    /// path there. wrench: sum of all impulses, including the load, about moment_center().
     void follow(const BodyPath& path, const Wrench& load, const Wrench& wrench);
     /// Applies impulses at the current position.
     void take(const Wrench& wrench);

@@ -1,8 +1,7 @@
 /// \file
 /// Emitters: positions, times and initial states of births. The schedule of births depends only on the emitter, not on
-/// the time step. Each birth has its own random numbers. Their key is the particle's number within the emitter. Method:
-/// W. T. Reeves, "Particle Systems: A Technique for Modeling a Class of Fuzzy Objects", ACM TOG 2(2), 1983 (mean and
-/// spread for every attribute).
+/// the time step. The random numbers of each birth depend on its number within the emitter. Method: W. T. Reeves,
+/// "Particle Systems: A Technique for Modeling a Class of Fuzzy Objects", ACM TOG 2(2), 1983.
 #pragma once
 
 #include <cstddef>
@@ -49,16 +48,14 @@ enum class CloudEnd {
     die,   ///< the children end with the parent
 };
 
-/// Children that move with their parent through flights and bounces. Each child has a target position relative to the
-/// parent. The target is drawn from the emitter's shape, in coordinates relative to the parent. A child receives its
-/// parent's acceleration and the parent's velocity changes at impacts. The scene's forces act on a child only through
-/// its parent. Surfaces act on a child directly, and the child keeps the resulting motion relative to the parent.
+/// Children that move with their parent through flights and bounces. The target position of each child relative to the
+/// parent is drawn from the emitter's shape. A child receives its parent's acceleration and the parent's velocity
+/// changes at impacts. Forces act on it only through its parent. Surfaces act on it directly, and it keeps the
+/// resulting motion relative to the parent.
 struct CloudRule {
-    Vec3 turning;       ///< angular velocity, in rad/s, of the target positions about the parent
-    double pull = 0.0;  ///< acceleration towards the target divided by the distance from the target, in 1/s^2, >= 0
-    double damping =
-        /// Deceleration divided by the velocity relative to the target, in 1/s, >= 0.
-        0.0;
+    Vec3 turning;          ///< angular velocity, in rad/s, of the target positions about the parent
+    double pull = 0.0;     ///< acceleration towards the target divided by the distance from the target, in 1/s^2, >= 0
+    double damping = 0.0;  ///< deceleration divided by the velocity relative to the target, in 1/s, >= 0
     CloudEnd end = CloudEnd::free;
 };
 
@@ -71,17 +68,17 @@ struct ParentRule {
     MeanSpread count{1.0, 0.0};
     double threshold_impulse = 0.0;  ///< least impulse, in N s, of an impact that gives birth; >= 0
     /// True if the parent ends and the children share its mass and momentum. EmitterDescription::mass is then the
-    /// weight of a share. Radii follow from the masses at the parent's density. Not available for BirthEvent::life.
+    /// weight of a share, and radii follow from the parent's density. Not available for BirthEvent::life.
     bool share = false;
     double inherit_velocity = 1.0;  ///< fraction of the parent's velocity that a child inherits; 1 when sharing
     double inherit_color = 0.0;     ///< fraction, 0..1, of the parent's colour in the child's colour
-    /// Rule of a cloud; nothing if the children fly independently. Not available for BirthEvent::death or sharing. A
-    /// child of a cloud inherits all of its parent's velocity.
+    /// Rule of a cloud, whose children inherit all of their parent's velocity; nothing if they fly independently. Not
+    /// available for BirthEvent::death or sharing.
     std::optional<CloudRule> cloud = std::nullopt;
 };
 
-// Attributes that change with a particle's age. Factors are given by keyed curves over the particle's life. The
-// products are computed when a state is shown and are never stored, so they do not depend on the time step.
+// Factors of attributes over a particle's life. The products are computed when a state is shown and are never stored,
+// so they do not depend on the time step.
 
 /// Factor of one attribute over a particle's life.
 struct LifeCurve {
@@ -91,8 +88,8 @@ struct LifeCurve {
     bool of_lifetime = true;
 };
 
-/// Returns a value multiplied by the factors of all curves for the attribute `name` at an age, in s. If the lifetime is
-/// infinite, its elapsed fraction is 0.
+/// Returns a value multiplied by the factors of all curves for `name` at an age, in s. The elapsed fraction of an
+/// infinite lifetime is 0.
 [[nodiscard]] AttributeValue shown_value(std::span<const LifeCurve> curves, std::string_view name,
                                          const AttributeValue& value, double age, double lifetime);
 
@@ -148,17 +145,15 @@ class MeshInterior;
 /// Draws positions in a shape.
 class ShapeSampler {
 public:
-    /// Throws InputError, with a sentence that names the fault, if the shape is outside the stated ranges. Also throws
-    /// for a mesh surface without area, and for a mesh volume that is not closed or fills less than kSmallestFill of
-    /// its box.
+    /// Throws InputError if the shape is outside the stated ranges, for a mesh surface without area, and for a mesh
+    /// volume that is not closed or fills less than kSmallestFill of its box.
     explicit ShapeSampler(const EmitterShape& shape);
 
-    /// Draws a birth position. radius: radius of the particle, in m. On a mesh surface the particle's centre keeps this
-    /// distance from the surface.
+    /// Draws a birth position. radius: distance of the particle's centre from a mesh surface, in m.
     [[nodiscard]] LaunchPoint draw(double radius, RandomSequence& random) const;
 
-    /// Smallest fraction of its box that a mesh volume must fill. Positions in a mesh volume are drawn by rejection
-    /// sampling, which would take too long below this fraction. Local: a limit of input values.
+    /// Smallest fraction of its box that a mesh volume must fill. Below it, rejection sampling would take too long.
+    /// Local: a limit of input values.
     static constexpr double kSmallestFill = 1e-4;
 
 private:
@@ -173,16 +168,15 @@ private:
     double cone_slope_ = 0.0;                     // tangent of a cone's angle
 };
 
-/// Returns points that have the same convex hull as the shape. Each circle of a round shape is replaced by `segments`
-/// points on it, at least 3. A ball is replaced by its outline as seen from `seen_from`. This function and the two
-/// functions below throw InputError for values out of range, like ShapeSampler.
+/// Returns points that have the same convex hull as the shape. Each circle is replaced by `segments` points on it, at
+/// least 3, and a ball by its outline as seen from `seen_from`. This function and the two functions below throw
+/// InputError for values out of range, like ShapeSampler.
 [[nodiscard]] std::vector<Vec3> outline_points(const EmitterShape& shape, const Vec3& seen_from, int segments);
 /// Returns a bounding box of the shape.
 [[nodiscard]] Box3 bounds(const EmitterShape& shape);
 
-// Size of an emitter on the screen of a reference camera. It is used by the second rule of W. T. Reeves for the births
-// per frame ("Particle Systems", ACM TOG 2(2), 1983, section 2.1). With this rule births are proportional to the screen
-// area, so distant emitters cost little. The camera belongs to the scene and does not depend on rendering.
+// Size of an emitter on the screen of a reference camera, for births in proportion to the screen area (W. T. Reeves,
+// section 2.1, second rule). Distant emitters then cost little. The camera does not depend on rendering.
 
 /// Pinhole camera with square pixels.
 struct ReferenceCamera {
@@ -192,20 +186,17 @@ struct ReferenceCamera {
     double image_height = 720.0;          ///< pixels from the lower to the upper edge, > 0
 };
 
-/// Returns the area, in pixels, of the convex hull of the projected shape. Parts outside the image are included. The
-/// image plane is at the distance s = image_height / (2 tan(field_of_view / 2)), in pixels. A point at depth d and
-/// distance r from the view axis is projected to s r / d. Round shapes are approximated by polygons with 256 corners.
-/// Throws InputError if a part of the shape is not in front of the camera, or if the camera is outside its stated
-/// ranges.
+/// Returns the area, in pixels, of the convex hull of the projected shape, including parts outside the image. The image
+/// plane is at the distance image_height / (2 tan(field_of_view / 2)), in pixels. Round shapes are approximated by
+/// polygons with 256 corners. Throws InputError if a part of the shape is not in front of the camera, or if the camera
+/// is outside its stated ranges.
 [[nodiscard]] double screen_area(const EmitterShape& shape, const ReferenceCamera& camera);
 
 // Particles launched from a moving frame.
 
-/// Converts a particle at its birth from a frame to world coordinates. Its position p, velocity u and spin s are given
-/// in the frame's coordinates, relative to the frame. At the birth time the frame has the rotation R, origin o,
-/// velocity v and angular velocity w. The position becomes o + R p, and the velocity becomes R u + v + w x (R p). A
-/// sphere turns with the frame until its birth, so its spin becomes R s + w. A point has no spin. All other members are
-/// unchanged. Throws InputError unless frame < frames.size().
+/// Converts position, velocity and spin of a particle at its birth from a frame to world coordinates. The velocity of
+/// the frame at the particle is added. A sphere turns with the frame until its birth, so the frame's angular velocity
+/// is added to its spin. Throws InputError unless frame < frames.size().
 [[nodiscard]] Particle launched_from(const FrameTree& frames, std::size_t frame, Particle particle);
 
 // The emitter itself.
@@ -223,11 +214,9 @@ struct EmitterDescription {
     EmitterShape shape;
     std::uint64_t burst = 0;  ///< particles born together at `start`
     MeanSpread rate;          ///< particles per second from `start` to `stop`, drawn anew for every second
-    /// Alternative rate: particles per frame (EmitterSurroundings::frame_rate), drawn anew for every frame. This is
-    /// Reeves's first method.
+    /// Alternative rate: particles per frame (EmitterSurroundings::frame_rate), drawn anew for every frame.
     MeanSpread rate_per_frame;
-    /// Alternative rate: particles per frame and per pixel of the shape's screen_area(). This is Reeves's second
-    /// method.
+    /// Alternative rate: particles per frame and per pixel of the shape's screen_area().
     MeanSpread rate_per_area;
     double start = 0.0;                                     ///< in s
     double stop = std::numeric_limits<double>::infinity();  ///< end of the births by a rate, in s
@@ -242,16 +231,15 @@ struct EmitterDescription {
     MeanSpread radius;                                                  ///< in m, mean - spread >= 0; 0 is a point
     MeanSpread lifetime{std::numeric_limits<double>::infinity(), 0.0};  ///< in s
     std::uint64_t limit = std::numeric_limits<std::uint64_t>::max();    ///< largest total number of births
-    /// Frames of the scene, or null. If null, shape, direction and velocity are in world coordinates. Otherwise they
-    /// are in the coordinates of frame number `frame` at the time of birth, see launched_from().
+    /// Frames of the scene, or null: shape, direction and velocity are then in world coordinates. Otherwise they are in
+    /// the coordinates of frame number `frame` at the time of birth, see launched_from().
     std::shared_ptr<const FrameTree> frames = nullptr;
     std::size_t frame = 0;
     std::vector<AttributeSpread> attributes;  ///< colours and opacities are clamped to 0..1, sizes to >= 0
     std::vector<LifeCurve> curves;  ///< factors of attributes over a particle's life, applied when a state is shown
     /// Own seed; if empty, the random numbers depend on the scene's seed and the emitter's index.
     std::optional<std::uint64_t> seed;
-    /// Rule for births from other particles. If it is given, burst, start and stop are unused, and the shape is used
-    /// only for the target positions of a cloud.
+    /// Rule for births from other particles. Burst, start and stop are then unused, and only clouds use the shape.
     std::optional<ParentRule> parent;
 };
 
@@ -279,9 +267,9 @@ struct DueBirth {
 /// Births of one emitter in time order.
 class Emitter {
 public:
-    /// Largest number of new positions that are tried if the test rejects a birth. After that the birth is skipped.
-    /// With fewer tries, births are skipped in narrow spaces that have a free position. With more tries, spaces without
-    /// a free position cost more time. Local, because public headers cannot include the tolerances.
+    /// Largest number of new positions that are tried if the test rejects a birth. With fewer tries, births are skipped
+    /// in narrow spaces that have a free position. With more tries, spaces without one cost more time. Local, because
+    /// public headers cannot include the tolerances.
     static constexpr int kMostRedraws = 64;
 
     /// seed: the scene's seed. number: this emitter's number in the scene, below 2^24 - 1. Throws an InputError that
@@ -289,22 +277,18 @@ public:
     Emitter(EmitterDescription description, std::uint64_t seed, std::uint32_t number,
             const EmitterSurroundings& surroundings = {});
 
-    /// Returns the particles born in [from, to), in birth order. Their ids are 0, and all other members are set. An
-    /// emitter with a parent rule returns none. The first call must start at 0, and each later call at the end of the
-    /// call before. Throws InputError for non-finite times. The results have the same bits for any division of time
-    /// into calls.
+    /// Returns the particles born in [from, to), in birth order, with the id 0. An emitter with a parent rule returns
+    /// none. The first call must start at 0, and each later call at the end of the call before. The results have the
+    /// same bits for any division of time into calls. Throws InputError for non-finite times.
     ///
     /// The burst is born at `start`. Birth k after the burst happens when the integral of the rate since `start`
-    /// reaches k + 1/2. The rate is drawn anew for every whole second (or frame) since `start`. Negative draws count as
-    /// 0.
+    /// reaches k + 1/2. The rate is drawn anew for every whole second (or frame). Negative draws count as 0.
     ///
-    /// most: largest number of particles that are made and returned. Births beyond this limit are still counted by
-    /// born().
+    /// most: largest number of particles that are made and returned. born() also counts the births beyond it.
     ///
     /// test: applied to each particle that is made. For a rejected particle, another position of the shape and its
-    /// direction are drawn from the same sequence, up to kMostRedraws times. All other members keep their values. If
-    /// every try is rejected, the birth is skipped and counted by refused(). A PointShape has no other position, so a
-    /// rejected birth is skipped at once. An empty test accepts all particles.
+    /// direction are drawn from the same sequence, up to kMostRedraws times; a PointShape has no other position. If
+    /// every try is rejected, the birth is skipped and counted by refused(). An empty test accepts all particles.
     [[nodiscard]] std::vector<Particle> births(double from, double to,
                                                std::uint64_t most = std::numeric_limits<std::uint64_t>::max(),
                                                const BirthTest& test = {});
@@ -315,29 +299,27 @@ public:
 
     // Parts of births(), for callers that make particles in several threads or processes.
 
-    /// Returns the next births before the time `to`, in s, in birth order, at most `most`. The returned births are
-    /// counted by born(), and the next call continues after them. An emitter with a parent rule returns none. Throws
-    /// InputError for a non-finite time.
+    /// Returns the next births before the time `to`, in s, in birth order, at most `most`. born() counts them, and the
+    /// next call continues after them. Throws InputError for a non-finite time.
     [[nodiscard]] std::vector<DueBirth> take_due(double to, std::uint64_t most);
-    /// Skips all remaining births before the time `to`, in s. They are counted by born(), but no particles are made.
-    /// Throws like take_due().
+    /// Skips all remaining births before the time `to`, in s. born() counts them. Throws like take_due().
     void skip_due(double to);
     /// Makes the particle of a birth in the same way as births(). Returns nothing if the test rejects every position.
-    /// The result depends only on the emitter, the birth and the test. The function is thread-safe if the test is.
+    /// The function is pure, and thread-safe if the test is.
     [[nodiscard]] std::optional<Particle> make(const DueBirth& birth, const BirthTest& test) const;
 
     [[nodiscard]] const EmitterDescription& description() const { return description_; }
     /// Returns the number of the emitter in its scene.
     [[nodiscard]] std::uint32_t number() const { return number_; }
 
-    /// Returns the particle drawn with the random numbers of (seed, number), born at time 0. The function is pure. An
-    /// attribute that the description does not name has the value missing_attribute().
+    /// Returns the particle drawn with the random numbers of (seed, number), born at time 0. An attribute that the
+    /// description does not name has the value missing_attribute().
     [[nodiscard]] Particle draw(std::uint64_t seed, std::uint64_t number) const;
     /// Draws a particle, and new positions until the test accepts one, in the same way as births(). Returns nothing if
     /// the test rejects all positions.
     [[nodiscard]] std::optional<Particle> draw(std::uint64_t seed, std::uint64_t number, const BirthTest& test) const;
-    /// Returns a uniform number in [mean - spread, mean + spread) from a separate stream. It is for draws that do not
-    /// belong to a single particle. purpose: number of the stream, 0..255.
+    /// Returns a uniform number in [mean - spread, mean + spread) that does not belong to a single particle. purpose:
+    /// number of its stream, 0..255.
     [[nodiscard]] double draw_once(std::uint64_t seed, std::uint32_t purpose, const MeanSpread& pair) const;
     /// Returns the index of the attribute's column; nothing if there is no such column.
     [[nodiscard]] std::optional<std::size_t> column(std::string_view name) const;

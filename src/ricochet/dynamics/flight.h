@@ -39,48 +39,39 @@ struct Flight {
     [[nodiscard]] bool has_spent_substeps() const { return substeps >= kMostSubsteps; }
 };
 
-/// Returns the flight of `duration` seconds from the beginning of a step or from birth. With an adaptive method the
-/// flight may be shorter: it ends with the first substep.
-///
-/// forward_euler moves the particle in a straight line with the current velocity. velocity_verlet (L. Verlet 1967;
-/// velocity form: W. C. Swope et al., J. Chem. Phys. 76, 1982) follows the parabola of the force at the start. The
-/// force at the end is evaluated with the velocity predicted from the force at the start.
-///
-/// dormand_prince (J. R. Dormand, P. J. Prince, J. Comput. Appl. Math. 6, 1980) halves its step until three estimates
-/// are within the tolerance: the embedded errors of position and velocity, and the distance between trajectory and path
-/// (h^4 / 384 times the fourth derivative). It stops halving at the shortest allowed substep (kShortestSubstep).
-///
-/// symplectic_euler is a splitting method: one kick with the force of the whole step, then a force-free drift. An
-/// impact reflects the drift, and the forces do not act again in that step. Kick and drift are each an exact
-/// Hamiltonian flow. With elastic walls, the drift is a billiard. The method therefore stays symplectic with bounces,
-/// and the height of an elastic ball stays bounded. A second kick after an impact would lose energy of the order g * dt
-/// * speed at every bounce. Source: E. Hairer, C. Lubich, G. Wanner, "Geometric Numerical Integration", 2nd ed.,
-/// section VI.3 (splitting).
-///
-/// implicit_euler kicks with the force at the end of the step, found by Newton's method, and then drifts. An impact
-/// reflects the drift, as with symplectic_euler. The method suits stiff forces. It damps oscillations with periods
-/// shorter than the step. Source: E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", section IV.3.
-///
-/// ballistic keeps the acceleration constant over the step. It evaluates the acceleration again after each impact.
-///
-/// midpoint and rk4 make their standard step. The path is the cubic Hermite polynomial through both end states. The
-/// errors of the path and of the time of impact are of fourth order in the duration (E. Hairer, S. P. Norsett, G.
-/// Wanner, "Solving Ordinary Differential Equations I", section II.6, dense output). If the acceleration is uniform,
-/// the path is the exact parabola.
+/// Returns the flight of `duration` seconds from the beginning of a step or from birth.
+/// - forward_euler: a straight line with the current velocity.
+/// - velocity_verlet (L. Verlet 1967; velocity form: W. C. Swope et al., J. Chem. Phys. 76, 1982): the parabola of the
+///   force at the start. The force at the end is evaluated with the velocity predicted from the force at the start.
+/// - symplectic_euler: one kick with the force of the whole step, then a force-free drift. An impact reflects the
+/// drift,
+///   and the forces do not act again in that step. Kick and drift are exact Hamiltonian flows, so the method stays
+///   symplectic with elastic bounces. A second kick after an impact would lose energy of the order g * dt * speed at
+///   every bounce. Source: E. Hairer, C. Lubich, G. Wanner, "Geometric Numerical Integration", 2nd ed., section VI.3.
+/// - implicit_euler: the same with the force at the end of the step, found by Newton's method. It suits stiff forces,
+///   and damps oscillations with periods shorter than the step. Source: E. Hairer, G. Wanner, "Solving Ordinary
+///   Differential Equations II", section IV.3.
+/// - ballistic: the parabola of a constant acceleration, which is evaluated again after each impact.
+/// - midpoint and rk4: the cubic Hermite polynomial through both end states. The errors of the path and of the time of
+///   impact are of fourth order in the duration (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential
+///   Equations I", section II.6, dense output). If the acceleration is uniform, the path is the exact parabola.
+/// - dormand_prince (J. R. Dormand, P. J. Prince, J. Comput. Appl. Math. 6, 1980): the flight ends with the first
+///   substep. The substep is halved until three estimates are within the tolerance: the embedded errors of position and
+///   velocity, and the distance between trajectory and path (h^4 / 384 times the fourth derivative). The shortest
+///   substep is kShortestSubstep of the duration.
 [[nodiscard]] Flight begin_flight(const Integrator& integrator, const ForceField& forces, const ForceInput& state,
                                   double duration);
 /// Returns the flight that continues after an impact, with the reflected velocity in `state`.
 [[nodiscard]] Flight resume_flight(const Integrator& integrator, const ForceField& forces, const ForceInput& state,
                                    const Flight& before, double duration);
-/// Returns the velocity at flight time s, in s. Impacts reflect this velocity, and the end of the step stores it. It is
-/// computed by a step of length s from the flight's start, because the derivative of the Hermite path is less accurate
-/// by one order.
+/// Returns the velocity at flight time s, in s. It is computed by a step of length s from the flight's start, because
+/// the derivative of the Hermite path is less accurate by one order.
 [[nodiscard]] Vec3 velocity_at(const Integrator& integrator, const ForceField& forces, const Flight& flight, double s);
 
-/// Returns a parabola for an acceleration that depends on neither position, velocity nor time. The parabola begins at
-/// the start of the flight. If the particle hits nothing, all further steps of `time_step` seconds end on the parabola,
-/// up to rounding. The distance of this and all further flights from the parabola is at most |acceleration| time_step^2
-/// / 8. duration: in s, at least that of the flight.
+/// Returns a parabola from the start of a flight with an acceleration that depends on neither position, velocity nor
+/// time. If the particle hits nothing, all steps of `time_step` seconds end on the parabola, up to rounding. The
+/// distance of their paths from it is at most |acceleration| time_step^2 / 8. duration: in s, at least that of the
+/// flight.
 [[nodiscard]] Path look_ahead_path(const Integrator& integrator, const Flight& flight, double time_step,
                                    double duration);
 
@@ -105,14 +96,13 @@ public:
         }
     }
 
-    /// Returns the state at the end of the step. A zero kick changes no bit of the position, because flush_tiny()
-    /// removes negative zeros.
+    /// Returns the state at the end of the step. A zero kick changes no bit, because flush_tiny() removes negative
+    /// zeros.
     [[nodiscard]] PhaseState step(const Vec3& position, const Vec3& velocity) const {
         return {flush_tiny(position + duration_ * (velocity + drift_kick_)), velocity + kick_};
     }
 
-    /// Returns true if the step does not change the velocity. Components that are negative zeros can still become
-    /// positive zeros.
+    /// Returns true if the step does not change the velocity, except for the sign of zeros.
     [[nodiscard]] bool is_straight() const { return kick_ == Vec3{} && drift_kick_ == Vec3{}; }
     [[nodiscard]] double duration() const { return duration_; }
 
@@ -131,23 +121,19 @@ struct FlowPath {
     bool is_coarse = false;      ///< true if the shortest allowed substep does not meet the tolerance
 };
 
-/// Returns true for the methods that support first-order motion: forward_euler, midpoint, rk4 and dormand_prince. The
-/// other methods advance position and velocity separately, but first-order motion has no velocity as a state.
+/// Returns true for the methods that support first-order motion. The other methods advance position and velocity
+/// separately, but first-order motion has no velocity as a state.
 [[nodiscard]] bool carries_along_flows(IntegratorKind kind);
 
-/// Returns the path from `position` at `time` over `duration` seconds (> 0). With dormand_prince the path may be
-/// shorter: it ends with the first substep. That method first tries `first` seconds, and no substep shorter than
-/// `shortest` seconds (0: kShortestSubstep of the duration). Throws InputError for a method that does not support
-/// first-order motion.
-///
-/// forward_euler, of first order, follows a straight line with the flow's velocity at the start. midpoint, of second
-/// order, and rk4, of fourth order, make their standard step. Their path is the cubic Hermite polynomial through both
-/// ends with the flow's velocities there. The error of the polynomial is of fourth order in the duration.
-///
-/// dormand_prince halves its step until two errors are within the position tolerance. One is the embedded error
-/// estimate. The other is the distance between the cubic and the method's own interpolant in the middle of the step,
-/// where this distance is largest. The velocity tolerance is unused. Sources: see integrator.h; interpolant: L. F.
-/// Shampine, "Some practical Runge-Kutta formulas", Mathematics of Computation 46, 1986.
+/// Returns the path from `position` at `time` over `duration` seconds (> 0). Throws InputError for a method that does
+/// not support first-order motion.
+/// - forward_euler: a straight line with the flow's velocity at the start.
+/// - midpoint and rk4: the cubic Hermite polynomial through both ends with the flow's velocities there. The error of
+///   the polynomial is of fourth order in the duration.
+/// - dormand_prince: the same cubic, over the first substep. The method tries `first` seconds, and no substep shorter
+///   than `shortest` seconds (0: kShortestSubstep of the duration). It halves the substep until two errors are within
+///   the position tolerance: the embedded estimate, and the distance between the cubic and the method's own interpolant
+///   in the middle, where it is largest (L. F. Shampine, see dormand_prince.h).
 [[nodiscard]] FlowPath flow_path(const Integrator& integrator, const FlowField& flow, const Vec3& position, double time,
                                  double duration, double first, double shortest = 0.0);
 

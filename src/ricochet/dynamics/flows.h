@@ -1,6 +1,5 @@
 /// \file
-/// Flows: the velocity of a medium as a function of position and time. Drags, field forces and first-order motion use
-/// them.
+/// Flows: the velocity of a medium as a function of position and time.
 #pragma once
 
 #include <array>
@@ -91,8 +90,8 @@ struct VortexSettings {
 struct VectorGrid {
     Vec3 origin;            ///< in m
     Vec3 spacing{1, 1, 1};  ///< in m, each > 0
-    std::array<std::uint32_t, 3>
-        counts{};              ///< number of points along each axis, >= 1; if 1, the field is constant along the axis
+    /// Number of points along each axis, >= 1; if 1, the field is constant along the axis.
+    std::array<std::uint32_t, 3> counts{};
     std::vector<Vec3> values;  ///< one per point
 };
 
@@ -108,9 +107,8 @@ enum class OutsideGrid {
 
 // Divergence-free turbulence: the curl of a noise.
 
-/// Turbulence with eddies of several sizes. Octave k has eddies of size length / 2^k. Their speeds are gain^k times
-/// those of the first octave. Octave k changes (2 gain)^k times as fast as the first octave, in proportion to the
-/// turnover rate of its eddies.
+/// Turbulence with eddies of several sizes. Octave k has eddies of size length / 2^k with gain^k times the speed of the
+/// first octave. It changes (2 gain)^k times as fast, in proportion to the turnover rate of its eddies.
 struct TurbulenceSettings {
     std::uint64_t seed = 0;
     double speed = 1.0;         ///< root mean square speed over space and seeds, in m/s, >= 0
@@ -122,10 +120,9 @@ struct TurbulenceSettings {
 inline constexpr std::uint32_t kMostOctaves = 16;
 
 /// Returns the analytic curl of three gradient noises. Its divergence is zero up to rounding. The pattern of an octave
-/// repeats in space after 256 eddy sizes of the octave. Over time each octave blends from one noise to the next. The
-/// squares of the two weights add up to 1, so the mean speed stays constant. Method: R. Bridson, J. Hourihan, M.
-/// Nordenstam, "Curl-noise for procedural fluid flow", ACM TOG 26(3), 2007; gradient noise: K. Perlin, "Improving
-/// noise", ACM TOG 21(3), 2002.
+/// repeats in space after 256 eddy sizes. Over time each octave blends from one noise to the next at a constant mean
+/// speed. Method: R. Bridson, J. Hourihan, M. Nordenstam, "Curl-noise for procedural fluid flow", ACM TOG 26(3), 2007;
+/// gradient noise: K. Perlin, "Improving noise", ACM TOG 21(3), 2002.
 [[nodiscard]] FlowPointer make_turbulence(const TurbulenceSettings& settings);
 
 }  // namespace ricochet

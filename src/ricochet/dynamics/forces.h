@@ -1,6 +1,5 @@
 /// \file
-/// Forces on single particles: the Force interface, sums of forces, forces from user callables, and the force laws of
-/// scene files.
+/// Forces on single particles: the Force interface, sums of forces, and the force laws of callables and scene files.
 #pragma once
 
 #include <cstdint>
@@ -18,22 +17,18 @@ class Coupling;
 
 /// State of one particle at one time: the input of a force.
 struct ForceInput {
-    Vec3 position;  ///< m
-    Vec3 velocity;  ///< m/s
-    double mass;    ///< kg
-    double radius;  ///< m
-    double time;    ///< s
-    /// Id of the particle, for forces that act on selected particles only.
-    std::uint64_t id = 0;
-    /// Action of other particles on this particle, from a bounce to the end of the step. Null if the particle is not
-    /// coupled.
+    Vec3 position;         ///< m
+    Vec3 velocity;         ///< m/s
+    double mass;           ///< kg
+    double radius;         ///< m
+    double time;           ///< s
+    std::uint64_t id = 0;  ///< id of the particle, for forces that act on selected particles only
+    /// Action of other particles on this particle, from a bounce to the end of the step; null if it is not coupled.
     const Coupling* coupling = nullptr;
-    /// Radius of the whole sphere, in m, if only a smaller core of it collides. `radius` is then the radius of the
-    /// core. 0 if the whole sphere collides. ForceField passes the whole radius to the forces.
+    /// Radius of the whole sphere, in m, if only a core with the radius `radius` collides, else 0. ForceField passes
+    /// the whole radius to the forces.
     double whole_radius = 0.0;
-    /// Value of the particle's attribute `temperature` at the start of the step, in K. 0 if the particle has no such
-    /// attribute.
-    double temperature = 0.0;
+    double temperature = 0.0;  ///< attribute `temperature` at the start of the step, in K; 0 without it
 };
 
 /// Action of other particles on a particle that has left the plan of a step by a bounce. Implementations are pure, like
@@ -105,14 +100,13 @@ public:
     [[nodiscard]] bool empty() const { return forces_.empty(); }
     /// Returns true if the acceleration depends on neither position, velocity nor time.
     [[nodiscard]] bool is_uniform() const { return uniform_; }
-    /// Returns true if the acceleration of this particle, including its coupling, depends on neither position, velocity
-    /// nor time.
+    /// Returns is_uniform() for this particle, including its coupling.
     [[nodiscard]] bool is_uniform_for(const ForceInput& input) const {
         if (input.coupling == nullptr) return uniform_;
         return !input.coupling->varies() && (uniform_ || input.coupling->replaces_forces());
     }
-    /// Returns the acceleration, in m/s^2, if it is the same for all particles at all positions and times. For
-    /// uncoupled particles the value has the same bits as acceleration().
+    /// Returns the acceleration, in m/s^2, if it is the same for all particles at all positions and times. It has the
+    /// same bits as acceleration() of uncoupled particles.
     [[nodiscard]] const std::optional<Vec3>& common_acceleration() const { return common_; }
     /// Returns true if no force depends on time.
     [[nodiscard]] bool is_steady() const { return steady_; }
@@ -174,18 +168,16 @@ struct Attractor {
 };
 
 /// Returns the sum of the attractors' accelerations a = -strength d / (|d|^2 + softening^2)^(3/2), in the given order.
-/// d points from the attractor to the particle. At the position of an attractor without softening the law is undefined.
-/// The acceleration by this attractor is then zero. Source: H. C. Plummer, MNRAS 71, 1911.
+/// d points from the attractor to the particle. At the position of an attractor without softening its acceleration is
+/// zero. Source: H. C. Plummer, MNRAS 71, 1911.
 [[nodiscard]] std::unique_ptr<Force> make_point_gravity(std::vector<Attractor> attractors);
 
 // A central force proportional to a power of the distance.
 
 /// Settings of the force F = -strength (s / reference)^(exponent - 1) d / reference. d points from the centre to the
-/// particle, and s^2 = |d|^2 + softening^2. Without softening the magnitude is strength (|d| / reference)^exponent. The
-/// exponent 1 gives a spring, 0 a constant attraction, and -2 the law of Coulomb and Newton.
-///
-/// The potential is a power of s, or a logarithm if the exponent is -1. It is zero at the centre for exponents above
-/// -1, at s = reference for -1, and at infinity for exponents below -1. The force is zero at the centre.
+/// particle, and s^2 = |d|^2 + softening^2. The exponent 1 gives a spring, 0 a constant attraction, and -2 the law of
+/// Coulomb and Newton. The force is zero at the centre. The potential is zero at the centre for exponents above -1, at
+/// s = reference for -1, and at infinity for exponents below -1.
 struct RadialForceSettings {
     Vec3 center;             ///< in m
     double strength = 0.0;   ///< force at the reference distance, in N; negative values repel
@@ -201,8 +193,8 @@ inline constexpr double kLargestRadialExponent = 12.0;
 // Springs from particles to fixed points.
 
 /// Settings of the force F = -stiffness (|d| - rest_length) d / |d| - damping (v . d) d / |d|^2. d points from the
-/// anchor to the particle. The damper acts only along the spring. If the particle is at the anchor, the spring has no
-/// direction, so the force is zero. The potential is stiffness / 2 (|d| - rest_length)^2. Damping stores no energy.
+/// anchor to the particle. The force is zero at the anchor, where the spring has no direction. The potential is
+/// stiffness / 2 (|d| - rest_length)^2. Damping stores no energy.
 struct AnchorSettings {
     Vec3 position;                           ///< in m
     double stiffness = 0.0;                  ///< in N/m, >= 0
@@ -232,11 +224,10 @@ struct LorentzSettings {
 [[nodiscard]] std::unique_ptr<Force> make_buoyancy(double fluid_density, const Vec3& gravity);
 
 /// Returns the buoyancy of gas parcels that are hotter or colder than the ambient gas: a = -gravity T /
-/// ambient_temperature. The ambient gas is at rest. Both gases are of the same kind and have the same pressure. The
-/// weight of the parcel is a separate force (make_gravity). The sum of buoyancy and weight is gravity (1 - T /
-/// ambient_temperature). Particles with the temperature 0 stand for bodies that are far denser than the gas. Buoyancy
-/// does not act on them. gravity in m/s^2; ambient_temperature in K, > 0. Source: J. S. Turner, "Buoyancy Effects in
-/// Fluids", Cambridge 1973, section 1.2, with the density of an ideal gas.
+/// ambient_temperature. Both gases are of the same kind and have the same pressure. The ambient gas is at rest. The
+/// weight of the parcel is a separate force (make_gravity). Buoyancy does not act on particles with the temperature 0,
+/// which stand for far denser bodies. gravity in m/s^2; ambient_temperature in K, > 0. Source: J. S. Turner, "Buoyancy
+/// Effects in Fluids", Cambridge 1973, section 1.2, with the density of an ideal gas.
 [[nodiscard]] std::unique_ptr<Force> make_thermal_buoyancy(double ambient_temperature, const Vec3& gravity);
 
 // Vector fields used directly as forces.
@@ -250,10 +241,9 @@ enum class FieldMeaning {
 /// Makes a force from a flow whose vectors are accelerations or forces. The force has no potential.
 [[nodiscard]] std::unique_ptr<Force> make_field_force(FlowPointer field, FieldMeaning meaning);
 
-/// Returns a force that acts tangentially around an axis, by the right-hand rule. The tangential acceleration is
-/// `acceleration` (m/s^2) at the distance core_radius (m, > 0). It increases linearly from the axis to that distance,
-/// and falls as 1 / distance outside. axis: any nonzero length. The force has no potential, because a particle that
-/// circles the axis gains energy.
+/// Returns a force that acts tangentially around an axis, by the right-hand rule. Its acceleration grows linearly from
+/// the axis to `acceleration` (m/s^2) at the distance core_radius (m, > 0), and falls as 1 / distance outside. axis:
+/// any nonzero length. The force has no potential, because a particle that circles the axis gains energy.
 [[nodiscard]] std::unique_ptr<Force> make_swirl(const Vec3& point, const Vec3& axis, double acceleration,
                                                 double core_radius);
 

@@ -14,9 +14,8 @@ inline constexpr std::string_view kTemperatureAttribute = "temperature";
 
 /// Heat exchange of a sphere of radius r with the medium, with the coefficient h in W/(m^2 K). The coefficient is
 /// given, or follows from the correlation of Ranz and Marshall: h = Nu conductivity / (2 r) with Nu = 2 + 0.6 Re^(1/2)
-/// Pr^(1/3). The Reynolds number is Re = density w 2 r / viscosity, where w is the speed relative to the flow. The
-/// defaults are the values of air at 20 degrees C. Source: W. E. Ranz, W. R. Marshall, "Evaporation from drops",
-/// Chemical Engineering Progress 48, 1952.
+/// Pr^(1/3) and Re = density w 2 r / viscosity, where w is the speed relative to the flow. The defaults describe air at
+/// 20 degrees C. Source: W. E. Ranz, W. R. Marshall, "Evaporation from drops", Chemical Engineering Progress 48, 1952.
 struct Convection {
     /// Given coefficient h, in W/(m^2 K), >= 0; if it is set, the members below are unused.
     std::optional<double> coefficient = std::nullopt;
@@ -61,9 +60,9 @@ struct CoolingRates {
 /// r^2. mass m in kg, radius r in m, heat transfer coefficient h in W/(m^2 K).
 [[nodiscard]] CoolingRates cooling_rates(const HeatSettings& heat, double mass, double radius, double coefficient);
 
-/// Returns the temperature, in K, after `duration` seconds. The result never passes the ambient temperature, for any
-/// duration. It is exact up to rounding if radiation is 0, or if convection and the ambient temperature are both 0.
-/// Otherwise the logarithm of T - Ta is integrated in adaptive steps with a tolerance of 1e-11.
+/// Returns the temperature, in K, after `duration` seconds. It never passes the ambient temperature. It is exact up to
+/// rounding if radiation is 0, or if convection and the ambient temperature are both 0. Otherwise the logarithm of T -
+/// Ta is integrated in adaptive steps with a tolerance of 1e-11.
 [[nodiscard]] double cooled(double temperature, double ambient, const CoolingRates& rates, double duration);
 
 }  // namespace ricochet

@@ -14,7 +14,7 @@ namespace ricochet {
 
 /// Terms of the derivative that a matrix contains.
 struct MatrixKind {
-    /// Fraction of the negative transverse stiffness of compressed springs in the matrix. With 0 the matrix is positive
+    /// Included fraction of the negative transverse stiffness of compressed springs. With 0 the matrix is positive
     /// definite, with 1 it is exact.
     double compression_stiffness = 1.0;
     bool is_symmetric = false;  ///< true: only the symmetric part of the derivative of forces on single members is used
@@ -30,8 +30,8 @@ struct ImplicitState {
 };
 
 /// Returns the negative derivative of the residuals with respect to the end velocities, in kg. The matrix has one row
-/// of blocks per member and one pair per bond. In the exact matrix, diagonal blocks are not symmetric if forces on
-/// single members have no symmetric derivative. All entries of diagonal blocks are then used.
+/// of blocks per member and one pair per bond. Diagonal blocks of the exact matrix may be asymmetric; all of their
+/// entries are then used.
 [[nodiscard]] BlockMatrix implicit_matrix(const ImplicitState& state, const MatrixKind& kind);
 
 /// Returns the product of a matrix from implicit_matrix() with a vector of three numbers per member.

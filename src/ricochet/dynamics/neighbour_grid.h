@@ -2,14 +2,12 @@
 /// Neighbour search: finds pairs of overlapping boxes with a sorted grid.
 ///
 /// There is one grid per level. The cells of level 0 have the size of the largest box, and each further level halves
-/// this size. Every box is assigned to a level whose cells are not smaller than the box. Within the level, it is
-/// assigned to the cell of its lower corner. A few boulders among sand therefore cost little. Boxes are sorted by level
-/// and cell, so the boxes in a row of cells along x are contiguous. The search merges neighbouring rows and needs no
-/// table of cells.
+/// this size. Every box is in the cell of its lower corner, at a level whose cells are not smaller than the box. A few
+/// boulders among sand therefore cost little. Boxes are sorted by level and cell, so the boxes in a row of cells along
+/// x are contiguous. The search merges neighbouring rows and needs no table of cells.
 ///
-/// The work is proportional to the numbers of boxes and pairs, for almost any distribution of the boxes. It can be
-/// larger for boxes that are far smaller than most boxes or far outside the region of most boxes. Such boxes may share
-/// large cells.
+/// The work is proportional to the numbers of boxes and pairs. It can be larger for boxes that are far smaller than
+/// most boxes or far outside their region, because such boxes may share large cells.
 ///
 /// Sources: sorting instead of tables, S. Green, "Particle Simulation using CUDA", NVIDIA, 2010; levels, H. Mio et al.,
 /// Powder Technology 169 (2006).
@@ -34,8 +32,8 @@ struct NeighbourPair {
     friend bool operator==(const NeighbourPair&, const NeighbourPair&) = default;
 };
 
-/// Sorted grid that finds pairs of boxes. Its memory is reused in the next search. The pairs do not depend on the
-/// number of threads.
+/// Sorted grid that finds pairs of boxes, in the same order for any number of threads. Its memory is reused in the next
+/// search.
 class NeighbourGrid {
 public:
     /// Upper bounds of the memory of a search: kBytesPerBox for each box plus kBytesPerPair for each pair found. Local:
@@ -43,15 +41,13 @@ public:
     static constexpr double kBytesPerBox = 108.0;
     static constexpr double kBytesPerPair = 24.0;
 
-    /// Returns all pairs of boxes that have a point in common, ascending by (first, second). Boxes must be finite or
-    /// empty (lower > upper). An empty box overlaps no box. The largest number of boxes is 2^32 - 1. The result is
-    /// valid until the next call.
+    /// Returns all pairs of boxes that have a point in common, ascending by (first, second). At most 2^32 - 1 boxes,
+    /// which must be finite or empty (lower > upper). The result is valid until the next call.
     const std::vector<NeighbourPair>& find_pairs(std::span<const Box3> boxes);
     /// Returns the pairs of the last search.
     [[nodiscard]] const std::vector<NeighbourPair>& pairs() const { return pairs_; }
 
-    /// Appends the indices of all boxes of the last search that have a point in common with `box`, in the order of the
-    /// cells. The function is thread-safe.
+    /// Appends the indices of all boxes of the last search that have a point in common with `box`. It is thread-safe.
     void find_near(const Box3& box, std::vector<std::uint32_t>& found) const;
 
     /// Returns the allocated memory, in bytes.

@@ -12,9 +12,8 @@
 namespace ricochet {
 
 /// Cache of neighbour pairs. It stores a grid of slightly enlarged boxes, the kept boxes. A second grid contains the
-/// boxes that have left their kept boxes since. While the second grid has few boxes, only pairs whose kept boxes
-/// overlap are tested again (L. Verlet, Phys. Rev. 159, 1967). If boxes move far between calls, they are not enlarged.
-/// The cache only saves time: the pairs are the same without it.
+/// boxes that have left their kept boxes since. While these are few, only pairs whose kept boxes overlap are tested
+/// again (L. Verlet, Phys. Rev. 159, 1967). If boxes move far between calls, they are not enlarged.
 class NeighbourPairs {
 public:
     /// Returns the same pairs as NeighbourGrid::find_pairs().

@@ -1,6 +1,5 @@
 /// \file
-/// Particles that act on each other, as one system of ordinary differential equations. This is the usual interface for
-/// solvers.
+/// Particles that act on each other, as one system of ordinary differential equations.
 #pragma once
 
 #include <array>
@@ -19,13 +18,9 @@ namespace ricochet {
 
 class MutualForces;
 
-/// System of particles for a solver of ordinary differential equations. It provides the phase-space vector, its
-/// dimension, and its derivative at a time. Entries 6 i to 6 i + 5 of the vector are x, y, z (m) and vx, vy, vz (m/s)
-/// of member i. The derivative contains the velocity and the acceleration at the same indices. It is zero for pinned
-/// members.
-///
-/// Source of the interface: A. Witkin, "Physically Based Modeling: Particle System Dynamics", SIGGRAPH course notes,
-/// 2001 (dimension, get state, set state, derivative).
+/// System of particles for a solver of ordinary differential equations. Entries 6 i to 6 i + 5 of the phase-space
+/// vector are x, y, z (m) and vx, vy, vz (m/s) of member i. The derivative is zero for pinned members. Source of the
+/// interface: A. Witkin, "Physically Based Modeling: Particle System Dynamics", SIGGRAPH course notes, 2001.
 class ParticleSystem {
 public:
     /// Spring of the system. `first` and `second` are member indices of its ends.
@@ -37,8 +32,7 @@ public:
 
     /// Both arguments must outlive the system. The springs must be bound to the particles that assign() receives.
     ParticleSystem(const ForceField& forces, const SpringNetwork& springs) : forces_(forces), springs_(springs) {}
-    /// Creates a system with forces between the members. `mutual` must also outlive the system. The same members must
-    /// be assigned to it.
+    /// Creates a system with forces between the members. `mutual` must outlive the system and have the same members.
     ParticleSystem(const ForceField& forces, const SpringNetwork& springs, const MutualForces& mutual)
         : forces_(forces), springs_(springs), mutual_(&mutual) {}
 
@@ -80,8 +74,8 @@ public:
     /// zero.
     void accelerations(double time, std::span<const Vec3> positions, std::span<const Vec3> velocities,
                        std::span<Vec3> result) const;
-    /// Returns the accelerations of all members by forces between members, in m/s^2. Springs are not included. The list
-    /// is empty if there are no such forces.
+    /// Returns the accelerations of all members by forces between members other than springs, in m/s^2. The list is
+    /// empty if there are no such forces.
     [[nodiscard]] std::vector<Vec3> mutual_accelerations(double time, std::span<const Vec3> positions,
                                                          std::span<const Vec3> velocities) const;
     /// Computes the accelerations in the given state. mutual: result of mutual_accelerations() in the same state.
@@ -150,8 +144,7 @@ private:
     double time_ = 0.0;
 };
 
-// The forces on a member are summed in the order of its springs. Threads handle different members, so no two threads
-// write to the same entry.
+// The forces on a member are summed in the order of its springs.
 template <class StateOf>
 Vec3 ParticleSystem::spring_force_in(std::size_t i, const StateOf& state_of) const {
     require_index(i, size(), "member of a system");

@@ -112,8 +112,7 @@ struct Particle {
     Vec3 spin{};                                                ///< angular velocity, in rad/s; spheres only
     bool pinned = false;  ///< true if the particle never moves, for example to attach springs
     Origin origin{};
-    std::vector<AttributeValue> attributes =
-        {};  ///< one value per column of Particles::attributes; missing values are replaced by fallbacks
+    std::vector<AttributeValue> attributes = {};  ///< one per column of Particles::attributes; may be missing
 };
 
 /// Surface number for "none".
@@ -134,12 +133,10 @@ public:
     std::vector<double> radius;
     std::vector<double> birth_time;
     std::vector<double> lifetime;
-    std::vector<double>
-        /// Time, in s, that the particle missed by exceeding its bounce budget, summed over its life.
-        unsimulated_time;
-    std::vector<std::uint32_t> contacts;  ///< number of impacts so far (saturating)
-    std::vector<std::uint8_t>
-        frozen;  ///< 1 if the state has left the range of the arithmetic, so the particle no longer moves
+    std::vector<double> unsimulated_time;  ///< time, in s, that the particle missed by exceeding its bounce budget
+    std::vector<std::uint32_t> contacts;   ///< number of impacts so far (saturating)
+    /// 1 if the state has left the range of the arithmetic, so the particle no longer moves.
+    std::vector<std::uint8_t> frozen;
     std::vector<std::uint8_t> resting;  ///< 1 while the particle rests on the surfaces in `support`
     std::vector<std::uint8_t> held;     ///< 1 while friction and support keep the particle at rest
     /// 1 if a surface has absorbed the particle, kShattered if fragments replace it. The entry is removed after the
@@ -148,9 +145,7 @@ public:
     std::vector<std::uint32_t> draws;  ///< number of random numbers drawn by impacts so far
     /// Surface numbers of the surfaces on which the particle slides, rolls or rests. Unused entries are kNoSupport.
     std::vector<std::array<std::uint32_t, 3>> support;
-    std::vector<double>
-        /// Remaining time, in s, of a bounce cascade that continues in the next step.
-        cascade_left;
+    std::vector<double> cascade_left;  ///< remaining time, in s, of a bounce cascade that continues in the next step
     std::vector<std::uint8_t> pinned;  ///< 1 if the particle never moves
     /// Simulation time, in s, up to which the loads of a sleeping particle on surfaces have been recorded.
     std::vector<double> accounted_until;

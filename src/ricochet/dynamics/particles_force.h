@@ -34,8 +34,7 @@ struct ParticlesView {
 class ParticlesForce {
 public:
     virtual ~ParticlesForce() = default;
-    /// Adds the acceleration of each particle by this force, in m/s^2, to the particle's entry in `result`. result has
-    /// the same length as the lists.
+    /// Adds the acceleration of each particle by this force, in m/s^2, to its entry in `result`.
     virtual void add_accelerations(const ParticlesView& particles, std::span<Vec3> result) const = 0;
     /// Returns the total potential energy, in J. Dissipative forces store no energy and return 0. Returns nothing if
     /// the force has no potential.
@@ -72,10 +71,9 @@ struct InverseSquareSettings {
     /// Softening length, in m, >= 0; the masses or charges are spread over about this length (Plummer's law).
     double softening = 0.0;
     SumMethod method = SumMethod::automatic;
-    /// Opening criterion of the tree, 0 < opening <= 1. A group is replaced by its moments if its relative size is
-    /// below this value. The relative size is the distance from the group's centre to its farthest particle, divided by
-    /// the distance from the group's centre to the evaluated particles. The resulting error is described in
-    /// docs/particle-forces.md.
+    /// Opening criterion of the tree, 0 < opening <= 1. A group is replaced by its moments if the distance from its
+    /// centre to its farthest particle, divided by that to the evaluated particles, is below this value. The resulting
+    /// error is described in docs/particle-forces.md.
     double opening = 0.5;
 };
 

@@ -1,6 +1,5 @@
 /// \file
-/// Springs between particles: the network of springs, its forces, its breaking, and functions that make ropes and
-/// cloth.
+/// Springs between particles: the network of springs, and functions that make ropes and cloth.
 #pragma once
 
 #include <array>
@@ -29,9 +28,7 @@ struct Spring {
     /// Stretch, relative to the rest length, above which the spring breaks permanently. > 0; infinite if the spring
     /// never breaks. A spring with the rest length 0 has no relative stretch and cannot break.
     double breaking_stretch = std::numeric_limits<double>::infinity();
-    /// True if the spring connects two vertices across an edge of cloth. Its force is the same as that of other
-    /// springs, but it is not shown as a thread.
-    bool resists_bending = false;
+    bool resists_bending = false;  ///< true if the spring crosses an edge of cloth; it is not shown as a thread
 };
 
 /// Returns the force on the first end of a spring, in N: k (l - l0) + c l' in the direction of the second end. l is the
@@ -41,9 +38,9 @@ struct Spring {
 [[nodiscard]] Vec3 spring_force(const Spring& spring, const Vec3& x_first, const Vec3& v_first, const Vec3& x_second,
                                 const Vec3& v_second);
 
-/// Springs between particles that are identified by their ids. `bind` sets the order of the particles. Lists of
-/// positions and velocities must then be in this order, with one entry per particle. Queries have no side effects and
-/// are thread-safe. Functions throw InputError for an index past the end and for a list of the wrong length.
+/// Springs between particles that are identified by their ids. `bind` sets the order of the particles in lists of
+/// positions and velocities. Queries are thread-safe. Functions throw InputError for an index past the end and for a
+/// list of the wrong length.
 class SpringNetwork {
 public:
     SpringNetwork() = default;
@@ -61,9 +58,8 @@ public:
         return states_[spring] == State::intact;
     }
 
-    /// Prepares the intact springs for particles in a given order: particle i has the id ids[i]. Call this function
-    /// whenever particles were added, removed or reordered. Springs with a missing end are removed permanently and
-    /// counted as lost. Throws InputError for a duplicate id.
+    /// Prepares the intact springs for particles with these ids, after particles were added, removed or reordered.
+    /// Springs with a missing end are removed permanently and counted as lost. Throws InputError for a duplicate id.
     void bind(std::span<const std::uint64_t> ids);
 
     /// An intact spring and the indices of its ends in the order of bind(). `a` is the first end, `b` the second.
@@ -98,8 +94,7 @@ public:
     /// springs that broke.
     std::size_t break_overstretched(std::span<const Vec3> position);
 
-    /// Saves or restores the sets of broken and lost springs. a: archive of a simulation state. Call bind after
-    /// restoring.
+    /// Saves or restores the sets of broken and lost springs. Call bind after restoring.
     template <class Archive>
     void archive(Archive& a) {
         a(states_, springs_.size());
@@ -133,15 +128,13 @@ private:
 
 // Functions that make ropes, chains and cloth from particles and springs.
 
-/// Triangle of cloth between three particles. The triangle exists as long as its three springs are intact. It is shown,
-/// but exerts no force.
+/// Triangle of cloth between three particles. It is shown as long as its three springs are intact.
 struct SpringFace {
     std::array<std::uint64_t, 3> corners;  ///< particle ids, in the mesh's winding
     std::array<std::uint32_t, 3> springs;  ///< numbers of the springs along its edges
 };
 
-/// Particles with springs between them. Ids are indices into `particles`, and `springs` refers to particles by these
-/// ids.
+/// Particles with springs between them. Ids are indices into `particles`.
 struct SpringBody {
     std::vector<Particle> particles;
     std::vector<Spring> springs;
@@ -156,15 +149,14 @@ struct RopeSettings {
     Vec3 from;              ///< first node, in m
     Vec3 to;                ///< last node, in m, different from the first
     std::size_t nodes = 2;  ///< >= 2
-    /// Rest length, in m, > 0. The default is the distance of the ends. A longer rope starts as a catenary that hangs
-    /// in the direction `sag`. A shorter rope starts as a straight line under tension.
+    /// Rest length, in m, > 0; nothing: the distance of the ends. A longer rope starts as a catenary that hangs in the
+    /// direction `sag`. A shorter rope starts straight, under tension.
     std::optional<double> length = {};
     Vec3 sag{0, 0, -1};   ///< initial direction in which a slack rope hangs; any nonzero length
     double mass = 1.0;    ///< total mass, in kg, > 0; half of a segment's mass is assigned to each of its nodes
     double radius = 0.0;  ///< radius of every node, in m, >= 0
-    /// Stiffness of the segments. Exactly one of the two members must be set. `stiffness`, in N/m, applies to every
-    /// segment. `axial_stiffness` is the elastic modulus E times the cross section A, in N. A segment with the rest
-    /// length l then has the stiffness E A / l.
+    /// Stiffness of every segment, in N/m, or the elastic modulus E times the cross section A, in N. A segment with the
+    /// rest length l then has the stiffness E A / l. Exactly one of the two members must be set.
     std::optional<double> stiffness = {};
     std::optional<double> axial_stiffness = {};
     double damping = 0.0;  ///< damping of every segment, in N s/m, >= 0
@@ -173,8 +165,7 @@ struct RopeSettings {
     bool pin_from = false;  ///< true: the first node never moves
     bool pin_to = false;    ///< true: the last node never moves
 };
-/// Makes a rope. The nodes are in order, and spring i joins nodes i and i + 1. Throws InputError for values out of
-/// range.
+/// Makes a rope. Spring i joins nodes i and i + 1. Throws InputError for values out of range.
 [[nodiscard]] SpringBody make_rope(const RopeSettings& settings);
 
 /// Settings of cloth: a particle for every vertex of a triangle mesh, and a spring along every edge.
@@ -184,33 +175,31 @@ struct ClothSettings {
     double radius = 0.0;     ///< radius of every particle, in m, >= 0
     double stiffness = 0.0;  ///< stiffness of the springs along edges, in N/m, >= 0
     double damping = 0.0;    ///< damping of all springs, in N s/m, >= 0
-    /// Stiffness, in N/m, >= 0, of the springs across edges between two triangles. Such a spring joins the two corners
-    /// opposite to the edge, and thus resists bending. If the stiffness is 0, no such springs are made.
+    /// Stiffness, in N/m, >= 0, of the springs that resist bending: they join the two corners opposite to an edge. If
+    /// it is 0, no such springs are made.
     double bending_stiffness = 0.0;
     /// Breaking stretch of the springs along edges, see Spring.
     double breaking_stretch = std::numeric_limits<double>::infinity();
     std::vector<std::uint32_t> pinned = {};  ///< indices of vertices that never move
 };
 /// Makes a cloth at rest in the shape of the mesh. Particles are in the order of the vertices. The springs along edges
-/// come first, in the order of the indices of their ends. The springs across edges follow. A non-manifold edge has no
-/// bending spring. Throws InputError for values out of range, a mesh without triangles, and vertices without an
-/// adjacent triangle of nonzero area. Source of the springs along edges for stretching and across edges for bending: X.
-/// Provot, "Deformation constraints in a mass-spring model to describe rigid cloth behavior", Graphics Interface 1995.
+/// come first, in the order of the indices of their ends. The springs across manifold edges follow. Throws InputError
+/// for values out of range, a mesh without triangles, and vertices without an adjacent triangle of nonzero area.
+/// Source: X. Provot, "Deformation constraints in a mass-spring model to describe rigid cloth behavior", Graphics
+/// Interface 1995.
 [[nodiscard]] SpringBody make_cloth(const TriangleMesh& mesh, const ClothSettings& settings);
 
 /// Returns a flat parallelogram as a mesh for make_cloth, with cells_u by cells_v cells of two triangles each. The
-/// diagonals of the cells alternate, so no diagonal direction is stiffer than the other. Vertex (i, j) is at corner +
-/// i/cells_u u + j/cells_v v and has the index j * (cells_u + 1) + i. Throws InputError for zero cells or parallel
-/// sides.
+/// diagonals of the cells alternate, so that both diagonal directions are equally stiff. Vertex (i, j) has the index j
+/// * (cells_u + 1) + i. Throws InputError for zero cells or parallel sides.
 [[nodiscard]] TriangleMesh sheet_mesh(const Vec3& corner, const Vec3& u, const Vec3& v, std::size_t cells_u,
                                       std::size_t cells_v);
 
 // The longest stable steps of explicit methods with springs.
 
-/// Returns a step, in s, for which every oscillation of these springs is stable. Longer steps may diverge. The step is
-/// infinite if there are no springs. It is also infinite for implicit_euler, and for dormand_prince, which chooses its
-/// own steps. particles: the ids in `springs` are indices into this list. Throws InputError for a particle that does
-/// not exist and for an unknown kind.
+/// Returns a step, in s, for which every oscillation of these springs is stable. It is infinite without springs, for
+/// implicit_euler, and for dormand_prince, which chooses its own steps. particles: the ids in `springs` are indices
+/// into this list. Throws InputError for a particle that does not exist and for an unknown kind.
 ///
 /// By Gershgorin's theorem, omega^2 = 2 max sum(k) / m is an upper bound of the squared frequencies, and gamma = 2 max
 /// sum(c) / m is an upper bound of the damping rates. The sums are over the springs of a particle. The stability limits

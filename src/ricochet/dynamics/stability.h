@@ -23,20 +23,15 @@ struct OscillationRates {
     double least_damper = std::numeric_limits<double>::infinity();
 };
 
-/// Returns the longest stable step, in s. Longer steps may diverge. The step is infinite for implicit_euler, and for
-/// dormand_prince, which chooses its own steps. Throws InputError for an unknown kind. The limits of the other methods
-/// are:
-/// - symplectic_euler, velocity_verlet and ballistic: h^2 omega^2 + 2 h gamma < 4.
-/// - Runge-Kutta methods: h times the largest eigenvalue must lie in their region of stability.
-/// - forward_euler: every damper must remove the energy that the step adds to its own oscillator.
+/// Returns the longest stable step, in s, with the limits of longest_stable_step() in springs.h.
 [[nodiscard]] double longest_stable_step(IntegratorKind kind, const OscillationRates& rates);
 
 /// Returns the rates of the springs by Gershgorin's bound, see longest_stable_step() in springs.h.
 [[nodiscard]] OscillationRates rates_of(std::span<const Spring> springs, const std::vector<Particle>& particles);
 
-/// Returns the factor by which a step of h seconds multiplies the energy of an oscillation with these rates. For
-/// Runge-Kutta methods, this is the squared modulus of the stability polynomial at h times the eigenvalue. For other
-/// methods the factor is 1, because they conserve or damp the energy while they are stable.
+/// Returns the factor by which a step of h seconds multiplies the energy of an oscillation with these rates: the
+/// squared modulus of the stability polynomial of Runge-Kutta methods at h times the eigenvalue. For other methods the
+/// factor is 1, because they conserve or damp the energy while they are stable.
 [[nodiscard]] double energy_factor(IntegratorKind kind, double omega_squared, double gamma, double h);
 
 /// Effect of a force of forces.h on the energy of a particle.
@@ -51,12 +46,11 @@ struct EnergyLaw {
 /// Returns the energy law of a force that acts on all particles.
 [[nodiscard]] std::optional<EnergyLaw> energy_law_of_global_force(const Force& force);
 
-/// Largest coordinates, in m, and velocity components, in m/s, at which forces and flows must be finite. Integrators
-/// may try states beyond this limit, at which powers overflow even in valid forces. Local: a limit of input values.
+/// Largest coordinates, in m, and velocity components, in m/s, at which forces and flows must be finite. Beyond it,
+/// powers overflow even in valid forces. Local: a limit of input values.
 inline constexpr double kLargestJudged = 1e25;
 
-/// Largest stiffness of a pair force along the line of the centres, within its attractive range, and its largest
-/// damping. Cohesion has the largest stiffness at contact, lennard_jones at the equilibrium distance.
+/// Largest stiffness of a pair force along the line of the centres, within its attractive range, and largest damping.
 struct PairSteepness {
     double stiffness = 0.0;  ///< in N/m
     double damping = 0.0;    ///< in N s/m
@@ -71,8 +65,8 @@ struct SteepPair {
     Vec3 direction;  ///< unit vector along the line of the centres
     PairSteepness steepness;
 };
-/// Returns the pairs within the cutoff at which the force has a positive stiffness, so that the particles could
-/// oscillate. The list is empty if steepness_of() returns nothing for the force.
+/// Returns the pairs within the cutoff at which the force has a positive stiffness, so that they could oscillate. The
+/// list is empty if steepness_of() returns nothing for the force.
 [[nodiscard]] std::vector<SteepPair> steep_pairs(const ParticlesForce& force, const ParticlesView& particles);
 
 /// Returns true for gravity and charge without softening, whose force grows without bound as two particles approach.
@@ -83,9 +77,7 @@ struct SteepPair {
 /// Returns true for the drags of forces.h on all particles.
 [[nodiscard]] bool is_drag_law(const Force& force);
 
-/// Returns the rate, in 1/s, at which a drag damps velocity changes in its direction, from central differences. For
-/// linear drag the rate is the coefficient divided by the mass. For quadratic drag it is twice the coefficient times
-/// the speed, divided by the mass.
+/// Returns the rate, in 1/s, at which a drag damps velocity changes in its direction, from central differences.
 [[nodiscard]] double damping_rate(const Force& drag, const ForceInput& input);
 
 }  // namespace ricochet

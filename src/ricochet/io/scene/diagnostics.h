@@ -1,6 +1,5 @@
 /// \file
-/// Errors, warnings and notes on a scene, and helper functions for their texts. All messages are collected, so one run
-/// shows all of them.
+/// Errors, warnings and notes on a scene, which are collected, and helper functions for their texts.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +11,7 @@
 
 namespace ricochet::detail {
 
-/// Returns the path of a value in the document, for example "colliders[1].file". Keys are quoted unless they are plain
-/// words.
+/// Return the path of a value in the document, for example "colliders[1].file". Keys are quoted unless they are plain.
 [[nodiscard]] std::string path_of_key(const std::string& parent, std::string_view key);
 [[nodiscard]] std::string path_of_item(const std::string& parent, std::size_t index);
 
@@ -30,8 +28,8 @@ public:
     void note(const SourceLocation& location, const std::string& path, std::string_view what);
 
     [[nodiscard]] bool failed() const { return !errors_.empty(); }
-    /// Returns one line per error, in the order of source locations. After ten errors, a last line states the number of
-    /// further errors. warnings() and notes() do the same after a hundred lines.
+    /// Return one line per entry, in the order of source locations. After ten errors, or a hundred warnings or notes, a
+    /// last line states the number of further entries.
     [[nodiscard]] std::vector<std::string> errors() const;
     [[nodiscard]] std::vector<std::string> warnings() const;
     [[nodiscard]] std::vector<std::string> notes() const;
@@ -52,9 +50,9 @@ private:
     std::vector<Entry> notes_;
 };
 
-/// Returns the smallest number of edits that turn a into b (optimal string alignment). Edits are insertions, deletions,
-/// replacements, and swaps of neighbours. Method: F. J. Damerau, "A technique for computer detection and correction of
-/// spelling errors", CACM 7(3), 1964.
+/// Returns the smallest number of insertions, deletions, replacements, and swaps of neighbours that turn a into b
+/// (optimal string alignment). Method: F. J. Damerau, "A technique for computer detection and correction of spelling
+/// errors", CACM 7(3), 1964.
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// Returns all candidates at the smallest edit distance from the word. The list is empty if this distance is too large.

@@ -62,23 +62,21 @@ inline constexpr std::size_t kLongestMessage = 200;
 inline constexpr std::size_t kDeepestNesting = 64;
 inline constexpr std::size_t kMostValues = 4000000;
 
-/// Parses a whole document. `//` and `/* */` comments are allowed. Errors are duplicate keys, trailing commas, and
-/// numbers beyond the range of doubles. Nesting deeper than kDeepestNesting and more than kMostValues values are also
-/// errors. Reports a syntax error and returns nothing. Reports duplicate keys and keeps the first one.
+/// Parses a whole document. `//` and `/* */` comments are allowed. Returns nothing after reporting a syntax error, a
+/// number beyond the range of doubles, or a document beyond the two limits. Reports duplicate keys and keeps the first.
 [[nodiscard]] std::optional<JsonNode> parse_json(std::string_view text, Diagnostics& diagnostics);
 
 /// Parses the value of a `--set` argument. Every node gets the given location. Returns nothing if the text is not JSON.
 [[nodiscard]] std::optional<JsonNode> parse_json_value(std::string_view text, const SourceLocation& location);
 
-/// Applies the change diagnostics.overrides()[number] to the document. Examples: `simulation.time_step=0.01`,
-/// `colliders[0].scale=[1, 2, 1]`, `materials["old rubber"].friction=0.2`. The text after '=' is parsed as JSON. If it
-/// is not JSON, it becomes a string, so `simulation.integrator=ballistic` needs no quotes. Adds missing objects and
-/// keys; a later check refuses unknown keys. List items must exist. Reports changes that cannot be applied.
+/// Applies the change diagnostics.overrides()[number] to the document. Examples: `colliders[0].scale=[1, 2, 1]`,
+/// `materials["old rubber"].friction=0.2`. A value that is not JSON becomes a string, so
+/// `simulation.integrator=ballistic` needs no quotes. Adds missing objects and keys; a later check refuses unknown
+/// keys. List items must exist. Reports changes that cannot be applied.
 void apply_override(JsonNode& root, std::size_t number, Diagnostics& diagnostics);
 
-/// Returns a hash of the scene's values, without source locations and comments. The hash excludes the duration, and the
-/// keys for output and pictures ("output", "camera", "picture", "title", "description"). It depends on the order of
-/// keys in the file.
+/// Returns a hash of the scene's values. It excludes the duration, and the keys for output and pictures. It depends on
+/// the order of keys in the file.
 [[nodiscard]] std::uint64_t scene_fingerprint(const JsonNode& root);
 
 }  // namespace ricochet::detail

@@ -500,24 +500,24 @@ TEST(AnalyticShape, StopsALargeBallInTheNarrowEndOfAnEllipsoid) {
     // all sides at x, where the largest ball about (x, 0, 0) has radius sqrt(1 - x^2 / 24) and is no larger.
     const AnalyticShape egg = ball_of({5, 1, 1});
     const double held = std::sqrt(0.75 * 24.0);
-    const auto contact = egg.first_contact(line_path({0, 0, 0}, {1, 0, 0}, 10.0), 0.5);
+    const auto contact = first_contact(egg, line_path({0, 0, 0}, {1, 0, 0}, 10.0), 0.5);
     ASSERT_TRUE(contact);
     EXPECT_NEAR(contact->time, held, 1e-14);
     EXPECT_NEAR(length(contact->point - Vec3{held, 0, 0}), 0.5, 1e-14);
     // Slightly beside the axis the ball touches one side first, from either direction of motion. The contact is never
     // later than on the axis.
     for (const double aside : {1e-300, 1e-15, 1e-9, 1e-4}) {
-        const auto beside = egg.first_contact(line_path({0, 0, aside}, {2, 0, 0}, 10.0), 0.5);
+        const auto beside = first_contact(egg, line_path({0, 0, aside}, {2, 0, 0}, 10.0), 0.5);
         ASSERT_TRUE(beside);
         EXPECT_NEAR(2.0 * beside->time, held, 1e-14 + 10.0 * aside);
         EXPECT_LT(beside->normal.z, 0.0);
     }
     // A ball that fits into the tip reaches it.
-    EXPECT_NEAR(egg.first_contact(line_path({0, 0, 0}, {1, 0, 0}, 10.0), 0.2)->time, 4.8, 1e-14);
-    EXPECT_NEAR(egg.first_contact(line_path({0, 0, 0}, {1, 0, 0}, 10.0), 0.01)->time, 4.99, 1e-14);
+    EXPECT_NEAR(first_contact(egg, line_path({0, 0, 0}, {1, 0, 0}, 10.0), 0.2)->time, 4.8, 1e-14);
+    EXPECT_NEAR(first_contact(egg, line_path({0, 0, 0}, {1, 0, 0}, 10.0), 0.01)->time, 4.99, 1e-14);
     // In a lens the medial axis is a disk, and the ball stops at the same distance.
     const AnalyticShape lens = ball_of({5, 5, 1});
-    const auto wedged = lens.first_contact(line_path({0, 0, 0}, {0.6, 0.8, 0}, 10.0), 0.5);
+    const auto wedged = first_contact(lens, line_path({0, 0, 0}, {0.6, 0.8, 0}, 10.0), 0.5);
     ASSERT_TRUE(wedged);
     EXPECT_NEAR(wedged->time, held, 1e-14);
 }
@@ -525,23 +525,22 @@ TEST(AnalyticShape, StopsALargeBallInTheNarrowEndOfAnEllipsoid) {
 TEST(AnalyticShape, DistinguishesGrazesFromMissesToRounding) {
     // Lines that dip into the sphere, or pass it, by a distance d. The dip lasts sqrt(8 d).
     for (const double d : {1e-3, 1e-9, 1e-14, 4e-16}) {
-        EXPECT_TRUE(unit_ball().first_contact(line_path({-2, 1 - d, 0}, {1, 0, 0}, 4), 0.0)) << d;
-        EXPECT_FALSE(unit_ball().first_contact(line_path({-2, 1 + d, 0}, {1, 0, 0}, 4), 0.0)) << d;
-        EXPECT_TRUE(ball_of({3, 1, 2}).first_contact(line_path({-6, 1 - d, 0}, {3, 0, 0}, 4), 0.0)) << d;
-        EXPECT_FALSE(ball_of({3, 1, 2}).first_contact(line_path({-6, 1 + d, 0}, {3, 0, 0}, 4), 0.0)) << d;
-        EXPECT_TRUE(unit_ball().first_contact(line_path({-2, 2 - 2 * d, 0}, {1, 0, 0}, 4), 1.0)) << d;
-        EXPECT_FALSE(unit_ball().first_contact(line_path({-2, 2 + 2 * d, 0}, {1, 0, 0}, 4), 1.0)) << d;
+        EXPECT_TRUE(first_contact(unit_ball(), line_path({-2, 1 - d, 0}, {1, 0, 0}, 4), 0.0)) << d;
+        EXPECT_FALSE(first_contact(unit_ball(), line_path({-2, 1 + d, 0}, {1, 0, 0}, 4), 0.0)) << d;
+        EXPECT_TRUE(first_contact(ball_of({3, 1, 2}), line_path({-6, 1 - d, 0}, {3, 0, 0}, 4), 0.0)) << d;
+        EXPECT_FALSE(first_contact(ball_of({3, 1, 2}), line_path({-6, 1 + d, 0}, {3, 0, 0}, 4), 0.0)) << d;
+        EXPECT_TRUE(first_contact(unit_ball(), line_path({-2, 2 - 2 * d, 0}, {1, 0, 0}, 4), 1.0)) << d;
+        EXPECT_FALSE(first_contact(unit_ball(), line_path({-2, 2 + 2 * d, 0}, {1, 0, 0}, 4), 1.0)) << d;
         if (d < 1e-15) continue;
-        EXPECT_TRUE(ball_of({3, 1, 2}).first_contact(line_path({-6, 1.5 - d, 0}, {3, 0, 0}, 4), 0.5)) << d;
-        EXPECT_FALSE(ball_of({3, 1, 2}).first_contact(line_path({-6, 1.5 + d, 0}, {3, 0, 0}, 4), 0.5)) << d;
-        EXPECT_TRUE(cylinder_of({3, 1, 2}).first_contact(line_path({-6, 0, 2.5 - d}, {3, 0, 0}, 4), 0.5)) << d;
-        EXPECT_FALSE(cylinder_of({3, 1, 2}).first_contact(line_path({-6, 0, 2.5 + d}, {3, 0, 0}, 4), 0.5)) << d;
+        EXPECT_TRUE(first_contact(ball_of({3, 1, 2}), line_path({-6, 1.5 - d, 0}, {3, 0, 0}, 4), 0.5)) << d;
+        EXPECT_FALSE(first_contact(ball_of({3, 1, 2}), line_path({-6, 1.5 + d, 0}, {3, 0, 0}, 4), 0.5)) << d;
+        EXPECT_TRUE(first_contact(cylinder_of({3, 1, 2}), line_path({-6, 0, 2.5 - d}, {3, 0, 0}, 4), 0.5)) << d;
+        EXPECT_FALSE(first_contact(cylinder_of({3, 1, 2}), line_path({-6, 0, 2.5 + d}, {3, 0, 0}, 4), 0.5)) << d;
     }
     // Parabolas inside the wall, which curves less than they do. The apex passes the wall by about d.
     const auto meets_wall = [](double d, double radius) {
-        return ball_of({4, 1, 4})
-            .first_contact(parabola_path({-1, 0.5 - radius, 0}, {1, 1 + d, 0}, {0, -1, 0}, 2.0), radius)
-            .has_value();
+        const Path path = parabola_path({-1, 0.5 - radius, 0}, {1, 1 + d, 0}, {0, -1, 0}, 2.0);
+        return first_contact(ball_of({4, 1, 4}), path, radius).has_value();
     };
     for (const double d : {1e-3, 1e-6, 1e-12}) {
         EXPECT_TRUE(meets_wall(d, 0.0)) << d;
@@ -557,40 +556,41 @@ TEST(AnalyticShape, StopsOnlyApproachingMotionOfAnOverlappingBall) {
     const AnalyticShape can = cylinder_of({2, 2, 2});
     for (const AnalyticShape& shape : {ball, egg, can}) {
         // The ball of radius 0.5 is 0.25 outside. Inward motion stops at once, outward motion never.
-        EXPECT_EQ(shape.first_contact(line_path({2.25, 0, 0}, {-1, 0, 0}, 9), 0.5)->time, 0.0);
-        EXPECT_EQ(shape.first_contact(line_path({2.25, 0, 0}, {-1, 0, 0}, 9), 0.5)->normal, Vec3(1, 0, 0));
-        EXPECT_FALSE(shape.first_contact(line_path({2.25, 0, 0}, {1, 0, 0}, 9), 0.5));
+        EXPECT_EQ(first_contact(shape, line_path({2.25, 0, 0}, {-1, 0, 0}, 9), 0.5)->time, 0.0);
+        EXPECT_EQ(first_contact(shape, line_path({2.25, 0, 0}, {-1, 0, 0}, 9), 0.5)->normal, Vec3(1, 0, 0));
+        EXPECT_FALSE(first_contact(shape, line_path({2.25, 0, 0}, {1, 0, 0}, 9), 0.5));
         // The ball is 0.25 inside. Outward motion stops at once, inward motion crosses to the other wall.
-        EXPECT_EQ(shape.first_contact(line_path({1.75, 0, 0}, {1, 0, 0}, 9), 0.5)->time, 0.0);
-        EXPECT_EQ(shape.first_contact(line_path({1.75, 0, 0}, {1, 0, 0}, 9), 0.5)->normal, Vec3(-1, 0, 0));
-        const auto across = shape.first_contact(line_path({1.75, 0, 0}, {-1, 0, 0}, 9), 0.5);
+        EXPECT_EQ(first_contact(shape, line_path({1.75, 0, 0}, {1, 0, 0}, 9), 0.5)->time, 0.0);
+        EXPECT_EQ(first_contact(shape, line_path({1.75, 0, 0}, {1, 0, 0}, 9), 0.5)->normal, Vec3(-1, 0, 0));
+        const auto across = first_contact(shape, line_path({1.75, 0, 0}, {-1, 0, 0}, 9), 0.5);
         ASSERT_TRUE(across);
         EXPECT_NEAR(across->time, 3.25, 1e-15);
         EXPECT_EQ(across->normal, Vec3(1, 0, 0));
         // A ball thrown outwards falls back. It stops at its turning point if it still overlaps there, or else when it
         // comes down again.
-        EXPECT_NEAR(shape.first_contact(parabola_path({2.25, 0, 0}, {0.5, 0, 0}, {-1, 0, 0}, 9), 0.5)->time, 0.5, 1e-9);
-        EXPECT_NEAR(shape.first_contact(parabola_path({2.25, 0, 0}, {1, 0, 0}, {-1, 0, 0}, 9), 0.5)->time,
+        EXPECT_NEAR(first_contact(shape, parabola_path({2.25, 0, 0}, {0.5, 0, 0}, {-1, 0, 0}, 9), 0.5)->time, 0.5,
+                    1e-9);
+        EXPECT_NEAR(first_contact(shape, parabola_path({2.25, 0, 0}, {1, 0, 0}, {-1, 0, 0}, 9), 0.5)->time,
                     1.0 + std::sqrt(0.5), 1e-15);
         // A ball too large for the inside is stopped past the middle, where the distance starts to decrease.
-        EXPECT_NEAR(shape.first_contact(line_path({1, 0, 0}, {-1, 0, 0}, 9), 2.5)->time, 1.0, 1e-9);
+        EXPECT_NEAR(first_contact(shape, line_path({1, 0, 0}, {-1, 0, 0}, 9), 2.5)->time, 1.0, 1e-9);
         // A centre on the surface may leave it to either side. It returns to the surface from that side.
-        EXPECT_FALSE(shape.first_contact(line_path({2, 0, 0}, {1, 0, 0}, 9), 0.5));
-        EXPECT_NEAR(shape.first_contact(line_path({2, 0, 0}, {-1, 0, 0}, 9), 0.5)->time, 3.5, 1e-15);
+        EXPECT_FALSE(first_contact(shape, line_path({2, 0, 0}, {1, 0, 0}, 9), 0.5));
+        EXPECT_NEAR(first_contact(shape, line_path({2, 0, 0}, {-1, 0, 0}, 9), 0.5)->time, 3.5, 1e-15);
     }
 }
 
 TEST(AnalyticShape, ReflectsAPointBornOnTheSurfaceWhenItReturns) {
     for (const AnalyticShape& shape : {ball_of({2, 2, 2}), ball_of({2, 3, 4}), cylinder_of({2, 3, 4})}) {
         for (const double direction : {1.0, -1.0}) {
-            const auto contact = shape.first_contact(line_path({2, 0, 0}, {direction, 0.1, 0.2}, 1), 0.0);
+            const auto contact = first_contact(shape, line_path({2, 0, 0}, {direction, 0.1, 0.2}, 1), 0.0);
             ASSERT_TRUE(contact);
             EXPECT_EQ(contact->time, 0.0);
             EXPECT_EQ(contact->normal, Vec3(-direction, 0, 0));
             EXPECT_EQ(contact->point, Vec3(2, 0, 0));
         }
     }
-    EXPECT_EQ(cylinder_of({2, 3, 4}).first_contact(line_path({0, 0, -4}, {0, 0, 1}, 1), 0.0)->normal, Vec3(0, 0, -1));
+    EXPECT_EQ(first_contact(cylinder_of({2, 3, 4}), line_path({0, 0, -4}, {0, 0, 1}, 1), 0.0)->normal, Vec3(0, 0, -1));
 }
 
 // ---- culling
@@ -638,7 +638,7 @@ struct Bouncer {
 
     /// Follows the path to its first contact or its end. Returns true if the particle was reflected.
     bool follow(const Path& path) {
-        const auto contact = shape.first_contact(path, radius);
+        const auto contact = first_contact(shape, path, radius);
         if (!contact) {
             p = path.end;
             v = path.velocity(path.duration);

@@ -14,7 +14,7 @@
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
-#include "run/regular_file.h"
+#include "ricochet/core/regular_file.h"
 #include "run/load_tables.h"
 #include "run/picture_files.h"
 

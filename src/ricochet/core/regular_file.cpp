@@ -1,4 +1,4 @@
-#include "run/regular_file.h"
+#include "ricochet/core/regular_file.h"
 
 #include <fmt/format.h>
 

@@ -108,7 +108,8 @@ double MovingSweep::clear_until(const PathPoint& start, double fine) {
         const QueryMargins margins(world, body.clear, query_.radius, body.beside);
         clear = std::min(clear, time_clear_of(world, margins, body.clear, fine));
     }
-    return clear < piece_.duration ? begin_ + clear : begin_ + piece_.duration;
+    // Whole fine pieces: so the broad phase's roundings do not reach the ends of pieces, and through them the results.
+    return clear < piece_.duration ? begin_ + std::floor(clear / fine) * fine : begin_ + piece_.duration;
 }
 
 void MovingSweep::set_piece(double to, const PathPoint& start) {

@@ -133,7 +133,8 @@ struct Separation {
         if (tube.per_squared_length > 0.0) {
             const auto [nearest, farthest] =
                 range_of(dot(tube.along, triangle.a), dot(tube.along, triangle.b), dot(tube.along, triangle.c));
-            const Number beside = Lanes::number(tube.beside) + tube.rounding * triangle.reach;
+            const Number beside =
+                Lanes::number(tube.beside) + tube.rounding * (triangle.reach + Lanes::number(tube.size));
             const Number low = tube.per_squared_length * (nearest - beside - Lanes::number(tube.most_ahead));
             const Number high = tube.per_squared_length * (farthest + beside - Lanes::number(tube.least_ahead));
             part.begin = select(low > 0.0, low, part.begin);

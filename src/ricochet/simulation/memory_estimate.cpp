@@ -185,9 +185,7 @@ double MemoryEstimate::bytes() const {
     return sum;
 }
 
-const MemoryNeed& MemoryEstimate::largest() const {
-    return *std::ranges::max_element(needs, {}, &MemoryNeed::bytes);
-}
+const MemoryNeed& MemoryEstimate::largest() const { return *std::ranges::max_element(needs, {}, &MemoryNeed::bytes); }
 
 MemoryEstimate estimate_memory(const SimulationSetup& setup) {
     MemoryEstimate estimate = Estimator(setup).estimate();

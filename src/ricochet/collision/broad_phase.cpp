@@ -40,6 +40,7 @@ public:
         if (path.degree < 2) return;
         // A chord over a time t has a sagitta of at most t^2 / 8 times the largest acceleration.
         longest_ = path.duration * std::sqrt(0.5 * margins.curvature / path.sagitta(0.0, path.duration)) * kShorter;
+        if (are_too_short()) left_ = 0;
     }
 
     /// Returns the next piece, or nothing if the path stays clear until its end or if too many pieces are needed. A

@@ -7,7 +7,8 @@
 namespace ricochet {
 
 /// Returns the distance from the path, in m, within which triangles are candidates. The candidates include every
-/// triangle that a chord accepted by covers_chord() may intersect.
+/// triangle that a chord accepted by covers_chord() may intersect. The distance does not apply if the boxes do not
+/// hold (QueryMargins::boxes_hold): every triangle is a candidate then.
 [[nodiscard]] double broad_phase_margin(const Path& path, const QueryMargins& margins);
 
 /// Returns true if the candidates of the path include all triangles that its chord from time `from` to `to` may

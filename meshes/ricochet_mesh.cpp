@@ -14,8 +14,8 @@
 #include "cli/command_line.h"
 #include "kinds.h"
 #include "ricochet/core/error.h"
-#include "ricochet/geometry/mesh/mesh_writer.h"
 #include "ricochet/geometry/predicates/predicates.h"
+#include "run/mesh_writer.h"
 
 namespace {
 

@@ -13,7 +13,7 @@
 
 #include "generators/build_near.h"
 #include "generators/rock.h"
-#include "ricochet/geometry/mesh/mesh_writer.h"
+#include "run/mesh_writer.h"
 
 namespace ricochet {
 namespace {

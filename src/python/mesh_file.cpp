@@ -10,8 +10,8 @@
 
 #include "python/arrays.h"
 #include "python/gil.h"
+#include "python/merged_vertices.h"
 #include "ricochet/core/error.h"
-#include "ricochet/geometry/mesh/merged_vertices.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/queries/mesh_queries.h"
 

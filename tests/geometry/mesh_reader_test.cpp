@@ -14,7 +14,7 @@
 #include "inspect/mesh_report.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/mesh/mesh_writer.h"
+#include "run/mesh_writer.h"
 #include "support/allocation_guard.h"
 #include "support/counts.h"
 #include "support/temporary_folder.h"

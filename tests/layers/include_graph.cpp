@@ -36,7 +36,7 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
         // lab: measurements
         {"compare", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io", "run"}},
         {"generators", {"core", "geometry"}},  // the library of the mesh generator
-        {"bench", {"core", "geometry", "collision", "dynamics", "response", "simulation", "generators"}},
+        {"bench", {"core", "geometry", "collision", "dynamics", "response", "simulation", "run", "generators"}},
         {"mpi", {"core"}},
         {"python",
          {"core", "geometry", "queries", "collision", "dynamics", "response", "simulation", "io", "inspect", "render"}},

@@ -19,7 +19,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
-#include "ricochet/geometry/mesh/mesh_writer.h"
+#include "run/mesh_writer.h"
 
 namespace ricochet::bench {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
-#include "ricochet/geometry/mesh/mesh_writer.h"
+#include "run/mesh_writer.h"
 #include "view/export/export_colliders.h"
 #include "view/export/export_folder.h"
 #include "view/export/frame_reader.h"

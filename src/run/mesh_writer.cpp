@@ -1,4 +1,4 @@
-#include "ricochet/geometry/mesh/mesh_writer.h"
+#include "run/mesh_writer.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "ricochet/geometry/mesh/merged_vertices.h"
+#include "python/merged_vertices.h"
 
 #include <gtest/gtest.h>
 

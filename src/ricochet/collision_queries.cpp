@@ -5,12 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <memory>
 #include <mutex>
-#include <optional>
 #include <utility>
-#include <vector>
 
 #include "ricochet/collision/collision_world.h"
 #include "ricochet/collision/contact_query.h"

@@ -3,10 +3,8 @@
 #include <atomic>
 #include <utility>
 
-#include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/simulation/cloud_motion.h"
 #include "ricochet/simulation/counters/counter_tally.h"

@@ -4,8 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "ricochet/core/tolerances.h"
-
 namespace ricochet {
 namespace {
 

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {

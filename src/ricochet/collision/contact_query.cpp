@@ -1,6 +1,5 @@
 #include "ricochet/collision/contact_query.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "ricochet/collision/surfaces_in_other_frames.h"

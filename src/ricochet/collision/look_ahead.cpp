@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "ricochet/core/box3.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/sweep/closest_point.h"
 

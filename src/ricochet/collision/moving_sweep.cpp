@@ -8,7 +8,6 @@
 #include "ricochet/collision/deforming_sweep.h"
 #include "ricochet/collision/look_ahead.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
 namespace {

@@ -1,9 +1,6 @@
 #include "ricochet/collision/narrow_phase.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <vector>
 
 #include "ricochet/core/tolerances.h"
 

@@ -2,8 +2,6 @@
 /// Pose of a frame of reference at a time, and its motion at that time.
 #pragma once
 
-#include <array>
-
 #include "ricochet/core/keyed_curve.h"
 #include "ricochet/core/transform.h"
 #include "ricochet/core/vec3.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "ricochet/core/portable_math.h"
 #include "ricochet/core/tolerances.h"

@@ -1,7 +1,6 @@
 #include "ricochet/dynamics/dormand_prince.h"
 
 #include <algorithm>
-#include <array>
 
 #include "ricochet/core/tolerances.h"
 

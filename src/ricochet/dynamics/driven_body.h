@@ -8,7 +8,6 @@
 /// velocity in the middle of the step (S. R. Buss, J. Comput. Phys. 164, 2000).
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "ricochet/core/body_path.h"

@@ -1,7 +1,6 @@
 // The backward Euler step of a whole system: Newton's method in which every iteration reduces an energy.
 #include <Eigen/SparseLU>
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "ricochet/core/parallel.h"

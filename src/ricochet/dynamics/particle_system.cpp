@@ -3,13 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 
-#include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/dynamics/implicit_euler.h"
-#include "ricochet/dynamics/mutual_forces.h"
 
 namespace ricochet {
 namespace {

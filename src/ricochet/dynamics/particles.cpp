@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
 #include <functional>
-#include <limits>
 #include <numeric>
 #include <utility>
 

@@ -1,7 +1,6 @@
 #include "ricochet/dynamics/system_integrator.h"
 
 #include <algorithm>
-#include <array>
 
 #include "ricochet/dynamics/dormand_prince.h"
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/single_contact.h"

@@ -1,11 +1,9 @@
 #include "ricochet/response/contact_manifold.h"
 
-#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/response/contact_interval.h"
 #include "ricochet/response/impulse_ledger.h"
 #include "ricochet/response/surface_kinematics.h"
 

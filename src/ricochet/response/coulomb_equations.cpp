@@ -1,7 +1,6 @@
 #include "ricochet/response/coulomb_equations.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 

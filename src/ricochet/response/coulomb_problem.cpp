@@ -5,8 +5,6 @@
 #include <span>
 #include <utility>
 
-#include "ricochet/core/tolerances.h"
-
 namespace ricochet {
 namespace {
 

@@ -1,6 +1,5 @@
 #include "ricochet/response/curved_contact.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "ricochet/core/tolerances.h"

@@ -1,7 +1,6 @@
 #include "ricochet/response/impact_resolver.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 

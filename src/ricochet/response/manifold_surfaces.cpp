@@ -1,8 +1,6 @@
 #include "ricochet/response/manifold_surfaces.h"
 
 #include <algorithm>
-#include <cstddef>
-#include <optional>
 #include <utility>
 
 #include "ricochet/core/tolerances.h"

@@ -1,6 +1,5 @@
 #include "ricochet/response/particle_mover.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "ricochet/core/tolerances.h"

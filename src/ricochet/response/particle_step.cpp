@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "ricochet/collision/moving_sweep.h"
 #include "ricochet/collision/surfaces_in_other_frames.h"
 
 namespace ricochet {

@@ -7,7 +7,6 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/dynamics/flight.h"
 #include "ricochet/response/advect.h"
 #include "ricochet/response/exact.h"
 #include "ricochet/response/impact_resolver.h"

@@ -1,7 +1,6 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/response/certified_motion.h"
-#include "ricochet/response/particle_step.h"
 #include "ricochet/response/rollback.h"
 
 #include <algorithm>

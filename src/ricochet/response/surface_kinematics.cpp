@@ -1,7 +1,5 @@
 #include "ricochet/response/surface_kinematics.h"
 
-#include <algorithm>
-
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {

@@ -1,6 +1,5 @@
 #include "ricochet/simulation/active_mover.h"
 
-#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -9,7 +8,6 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/rollback.h"
 #include "ricochet/simulation/cloud_motion.h"
-#include "ricochet/simulation/heat_stage.h"
 
 namespace ricochet {
 

@@ -7,7 +7,6 @@
 
 #include "ricochet/core/algorithms.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/core/tolerances.h"
 #include "ricochet/simulation.h"
 
 namespace ricochet {

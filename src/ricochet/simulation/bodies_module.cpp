@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/settings_table.h"
 #include "ricochet/simulation/state_archive.h"
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"

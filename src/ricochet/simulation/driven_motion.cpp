@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
-#include <utility>
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"

@@ -1,11 +1,9 @@
 #include "ricochet/simulation/loads_on_bodies.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 
-#include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/impact_tally.h"
 
 namespace ricochet {

@@ -7,10 +7,8 @@
 #include <limits>
 #include <utility>
 
-#include "ricochet/collision/contact_query.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/simulation/cloud_motion.h"
 #include "ricochet/simulation/flight_knots.h"
 
 namespace ricochet {

@@ -1,8 +1,6 @@
 #include "ricochet/simulation/particle_store.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "ricochet/core/algorithms.h"

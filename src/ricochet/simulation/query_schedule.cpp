@@ -1,6 +1,5 @@
 #include "ricochet/simulation/query_schedule.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace ricochet {

@@ -1,11 +1,9 @@
 #include "ricochet/simulation/run_recorder.h"
 
-#include <algorithm>
 #include <utility>
 #include <variant>
 
 #include "ricochet/core/algorithms.h"
-#include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/particle_store.h"
 #include "ricochet/verify/rebound.h"

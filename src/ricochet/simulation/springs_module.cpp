@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
-#include "ricochet/simulation/pair_motion.h"
 
 namespace ricochet {
 

@@ -12,7 +12,6 @@
 
 #include "ricochet/core/binary_archive.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/dynamics/settings_table.h"
 #include "ricochet/response/pair_materials.h"
 #include "ricochet/response/settings_table.h"
 

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <memory>
 #include <span>
-#include <utility>
 
 #include "ricochet/core/error.h"
 

@@ -6,10 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
-#include <string>
-#include <string_view>
 
-#include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/settings_table.h"
 #include "ricochet/simulation/memory_estimate.h"

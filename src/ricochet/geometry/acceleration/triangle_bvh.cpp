@@ -6,7 +6,6 @@
 #include <limits>
 #include <mutex>
 #include <optional>
-#include <type_traits>
 
 #include "ricochet/core/box_tools.h"
 #include "ricochet/core/thread_sanitizer.h"

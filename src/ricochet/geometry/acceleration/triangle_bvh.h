@@ -12,7 +12,6 @@
 #include <span>
 #include <string>
 #include <type_traits>
-#include <vector>
 
 #include "ricochet/core/box3.h"
 #include "ricochet/geometry/acceleration/triangle_clusters.h"

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "ricochet/core/box3.h"
 #include "ricochet/core/page_vector.h"

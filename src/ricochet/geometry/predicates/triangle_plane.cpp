@@ -1,7 +1,5 @@
 #include "ricochet/geometry/predicates/triangle_plane.h"
 
-#include "ricochet/geometry/predicates/exact_arithmetic.h"
-
 namespace ricochet {
 namespace {
 

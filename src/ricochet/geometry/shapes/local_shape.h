@@ -9,7 +9,6 @@
 #include <optional>
 #include <span>
 
-#include "ricochet/core/double_double.h"
 #include "ricochet/core/vec3.h"
 #include "ricochet/geometry/shapes/ellipsoid.h"
 

@@ -1,11 +1,8 @@
 #include "ricochet/geometry/sweep/sphere_sweep.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/predicates/predicates.h"
-#include "ricochet/geometry/sweep/closest_point.h"
 #include "ricochet/geometry/sweep/sphere_triangle_sweep.h"
 
 namespace ricochet {

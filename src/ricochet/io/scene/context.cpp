@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
-#include "ricochet/core/error.h"
 #include "ricochet/core/printable.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/mesh/plausible_size.h"

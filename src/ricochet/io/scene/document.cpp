@@ -6,12 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <variant>
-#include <vector>
 
 #include "ricochet/core/hash.h"
 #include "ricochet/core/printable.h"

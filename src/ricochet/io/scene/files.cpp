@@ -10,12 +10,10 @@
 #include <span>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/memory_limit.h"
 #include "ricochet/geometry/mesh/face_names.h"
-#include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/io/scene/diagnostics.h"
 
 namespace ricochet::detail {

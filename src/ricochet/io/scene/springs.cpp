@@ -8,7 +8,6 @@
 #include "ricochet/core/box3.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/memory_limit.h"
-#include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/settings_table.h"
 #include "ricochet/dynamics/springs.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"

@@ -1,11 +1,9 @@
 #include "ricochet/response/contact_solver/contact_island.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "ricochet/core/prefetch.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/response/contact_solver/planned_move.h"
 
 namespace ricochet {
 namespace {

@@ -2,7 +2,6 @@
 /// A contact island. One contact problem determines the motion of all its spheres over a step.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>

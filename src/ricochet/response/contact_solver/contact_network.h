@@ -32,7 +32,6 @@
 /// "Adaptive restart for accelerated gradient schemes", Found. Comput. Math. 15 (2015), for their acceleration.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 
 #include "ricochet/core/vec3.h"

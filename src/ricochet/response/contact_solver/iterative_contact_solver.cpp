@@ -1,7 +1,6 @@
 #include "ricochet/response/contact_solver/iterative_contact_solver.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/prefetch.h"

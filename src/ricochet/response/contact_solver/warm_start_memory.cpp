@@ -1,6 +1,5 @@
 #include "ricochet/response/contact_solver/warm_start_memory.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>

@@ -14,12 +14,12 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/terminal.h"
+#include "inspect/face_names.h"
 #include "inspect/mesh_report.h"
 #include "inspect/scene_schema.h"
 #include "inspect/scene_warnings.h"
 #include "ricochet/core/memory_limit.h"
 #include "ricochet/core/printable.h"
-#include "ricochet/geometry/mesh/face_names.h"
 #include "ricochet/geometry/mesh/plausible_size.h"
 #include "ricochet/io/scene.h"
 

@@ -20,11 +20,11 @@
 #include "cli/interrupts.h"
 #include "cli/shared_run.h"
 #include "cli/terminal.h"
+#include "inspect/mesh_topology.h"
 #include "mpi/mpi_ranks.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/acceleration/triangle_bvh.h"
-#include "ricochet/geometry/mesh/mesh_topology.h"
 #include "ricochet/io/scene.h"
 #include "ricochet/io/scene/diagnostics.h"
 

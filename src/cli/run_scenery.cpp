@@ -9,7 +9,7 @@
 #include "cli/run_pictures.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/geometry/mesh/mesh_openings.h"
+#include "ricochet/geometry/mesh/winding_number.h"
 #include "run/camera_frames.h"
 #include "run/vtp_reader.h"
 #include "view/export/frame_reader.h"

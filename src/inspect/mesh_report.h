@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "inspect/face_names.h"
+#include "inspect/mesh_topology.h"
 #include "ricochet/core/box3.h"
-#include "ricochet/geometry/mesh/face_names.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
-#include "ricochet/geometry/mesh/mesh_topology.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {

@@ -12,11 +12,12 @@
 #include <utility>
 #include <variant>
 
+#include "inspect/mesh_openings.h"
 #include "inspect/shells.h"
 #include "ricochet/collision_queries.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/mesh/mesh_interior.h"
-#include "ricochet/geometry/mesh/mesh_openings.h"
+#include "ricochet/geometry/mesh/winding_number.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {

@@ -14,8 +14,8 @@
 #include "inspect/self_intersections.h"
 #include "ricochet/core/disjoint_sets.h"
 #include "ricochet/geometry/mesh/closed_surface.h"
+#include "ricochet/geometry/mesh/edge_table.h"
 #include "ricochet/geometry/mesh/mesh_interior.h"
-#include "ricochet/geometry/mesh/mesh_topology.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {

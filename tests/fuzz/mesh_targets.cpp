@@ -2,9 +2,9 @@
 #include <optional>
 
 #include "fuzz/fuzz_targets.h"
+#include "inspect/mesh_topology.h"
 #include "ricochet/core/error.h"
 #include "ricochet/geometry/mesh/mesh_source.h"
-#include "ricochet/geometry/mesh/mesh_topology.h"
 #include "ricochet/geometry/mesh/triangulation.h"
 
 namespace ricochet::fuzz {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "inspect/mesh_openings.h"
 #include "inspect/mesh_report.h"
 #include "ricochet/core/random.h"
 #include "ricochet/geometry/mesh/mesh_interior.h"
-#include "ricochet/geometry/mesh/mesh_openings.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"

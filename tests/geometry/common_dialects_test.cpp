@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "geometry/mesh_files.h"
+#include "inspect/face_names.h"
 #include "inspect/mesh_report.h"
 #include "ricochet/core/error.h"
-#include "ricochet/geometry/mesh/face_names.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "support/gltf_files.h"
 

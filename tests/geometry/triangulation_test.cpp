@@ -10,8 +10,8 @@
 #include <random>
 #include <utility>
 
+#include "inspect/mesh_topology.h"
 #include "ricochet/core/error.h"
-#include "ricochet/geometry/mesh/mesh_topology.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "support/counts.h"
 

@@ -78,7 +78,7 @@ constexpr std::array kDoors = {
     Door{"ricochet/geometry/acceleration/embree\\.h",
          "src/ricochet/geometry/acceleration/triangle_bvh\\.cpp|src/view/render/(preview_impl\\.h|drawn_mesh\\.h|"
          "shape_copies\\.h)|src/lab/bench/native_ray\\.h"},
-    Door{"OpenMesh/", "src/ricochet/geometry/mesh/mesh_topology\\.cpp"},
+    Door{"OpenMesh/", "src/inspect/mesh_topology\\.cpp"},
     Door{"assimp/", "src/ricochet/geometry/mesh/assimp_reader\\.cpp"},
     Door{"(oneapi/)?tbb/", "src/ricochet/core/parallel\\.cpp|tests/core/parallel_test\\.cpp"},
     Door{"nlohmann/",

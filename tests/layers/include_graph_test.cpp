@@ -114,7 +114,7 @@ TEST(IncludeGraph, AllowedIncludesPass) {
         {"src/ricochet/io/scene.cpp", "nlohmann/json.hpp"},
         {"src/ricochet/geometry/acceleration/triangle_bvh.cpp", "ricochet/geometry/acceleration/embree.h"},
         {"src/ricochet/geometry/acceleration/embree.h", "embree4/rtcore.h"},
-        {"src/ricochet/geometry/mesh/mesh_topology.cpp", "OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh"},
+        {"src/inspect/mesh_topology.cpp", "OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh"},
         {"src/ricochet/core/parallel.cpp", "tbb/parallel_for.h"},
         {"src/ricochet/core/error.cpp", "fmt/core.h"},
         {"src/ricochet/verify/verifier.h", "ricochet/geometry/mesh/triangle_mesh.h"},

@@ -8,7 +8,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/mesh/mesh_openings.h"
+#include "ricochet/geometry/mesh/winding_number.h"
 #include "ricochet/queries/mesh_queries.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"

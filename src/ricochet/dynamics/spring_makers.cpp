@@ -10,7 +10,7 @@
 #include "ricochet/core/portable_math.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/settings_table.h"
-#include "ricochet/geometry/mesh/mesh_topology.h"
+#include "ricochet/geometry/mesh/edge_table.h"
 
 namespace ricochet {
 
@@ -189,7 +189,7 @@ SpringBody make_rope(const RopeSettings& settings) {
 SpringBody make_cloth(const TriangleMesh& mesh, const ClothSettings& settings) {
     require_corners(mesh);
     check(mesh, settings);
-    const std::vector<MeshEdge> edges = MeshTopology(mesh).edges();
+    const std::vector<MeshEdge> edges = edges_of(mesh);
     SpringBody cloth;
     cloth.particles = cloth_particles(mesh, settings);
     const auto distance = [&](std::uint32_t a, std::uint32_t b) { return length(mesh.vertices[b] - mesh.vertices[a]); };

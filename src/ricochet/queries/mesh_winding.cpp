@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "ricochet/core/parallel.h"
-#include "ricochet/geometry/mesh/mesh_openings.h"
 #include "ricochet/geometry/mesh/vertex_welder.h"
+#include "ricochet/geometry/mesh/winding_number.h"
 #include "ricochet/queries/mesh_index.h"
 #include "ricochet/queries/ray_crossings.h"
 

@@ -22,7 +22,7 @@ struct BoundaryEdge {
 [[nodiscard]] std::vector<BoundaryEdge> boundary_of(const TriangleMesh& mesh);
 
 /// Returns the winding number of the mesh around a point: the fraction of all directions from the point that hit the
-/// back of the mesh, less the fraction that hit its front. The result equals that of geometry/mesh/mesh_openings.h up
+/// back of the mesh, less the fraction that hit its front. The result equals that of geometry/mesh/winding_number.h up
 /// to rounding. The time grows with the number of boundary edges instead of triangles.
 ///
 /// Half-strips extend from the boundary edges, opposite to a fixed direction, and close the mesh at infinity. A ray in

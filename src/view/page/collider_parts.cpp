@@ -10,7 +10,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/geometry/mesh/mesh_openings.h"
+#include "ricochet/geometry/mesh/winding_number.h"
 #include "run/vtp_reader.h"
 #include "view/export/frame_reader.h"
 #include "view/export/moving_meshes.h"

@@ -3,8 +3,7 @@
 ///
 /// A mesh is closed if every edge belongs to an even number of faces. Vertices at equal positions (0 and -0 are equal)
 /// count as one vertex, because programs duplicate vertices along seams of textures and normals. A face that repeats an
-/// earlier one, in any winding, counts once. The winding of other faces has no influence:
-/// TopologyReport::inconsistent_edges counts the edges at which it changes.
+/// earlier one, in any winding, counts once. The winding of other faces has no influence.
 ///
 /// There is one exception. A sheet has two sides if faces repeat earlier ones in the opposite winding. If a shell is
 /// closed only when both sides of its sheets count, both sides count. Such a sheet is closed, as a body without an
@@ -14,7 +13,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ricochet/geometry/mesh/mesh_topology.h"
+#include "ricochet/geometry/mesh/edge_table.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {

@@ -1,5 +1,6 @@
 #include "ricochet/geometry/mesh/face_group_table.h"
 
+#include <algorithm>
 #include <functional>
 
 namespace ricochet {
@@ -39,6 +40,17 @@ std::uint32_t FaceGroupTable::name_number(PolygonMesh& mesh, const std::string& 
     const auto [entry, is_new] = numbers_.try_emplace(name, static_cast<std::uint32_t>(mesh.group_names.size()));
     if (is_new) mesh.group_names.push_back(name);
     return entry->second;
+}
+
+std::vector<std::string_view> words_of(std::string_view text) {
+    constexpr std::string_view kBlanks = " \t";
+    std::vector<std::string_view> words;
+    for (std::size_t at = text.find_first_not_of(kBlanks); at != std::string_view::npos;) {
+        const std::size_t end = std::min(text.find_first_of(kBlanks, at), text.size());
+        words.push_back(text.substr(at, end - at));
+        at = text.find_first_not_of(kBlanks, end);
+    }
+    return words;
 }
 
 }  // namespace ricochet

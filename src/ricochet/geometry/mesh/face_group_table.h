@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <unordered_map>
+#include <vector>
 
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
@@ -44,5 +46,8 @@ private:
     std::unordered_map<FaceGroup, std::uint32_t, Hash> groups_;
     std::unordered_map<std::string, std::uint32_t> numbers_;
 };
+
+/// Returns the words of a name, which are separated by blanks.
+[[nodiscard]] std::vector<std::string_view> words_of(std::string_view text);
 
 }  // namespace ricochet

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/mesh/mesh_topology.h"
+#include "ricochet/geometry/mesh/edge_table.h"
 #include "ricochet/geometry/mesh/vertex_welder.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/geometry/sweep/point_sweep.h"

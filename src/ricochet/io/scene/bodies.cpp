@@ -18,7 +18,7 @@
 #include "ricochet/dynamics/settings_table.h"
 #include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/mesh/mass_moments.h"
-#include "ricochet/geometry/mesh/mesh_openings.h"
+#include "ricochet/geometry/mesh/winding_number.h"
 #include "ricochet/io/scene/context.h"
 
 namespace ricochet::detail {

@@ -13,7 +13,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/memory_limit.h"
-#include "ricochet/geometry/mesh/face_names.h"
+#include "ricochet/geometry/mesh/face_group_table.h"
 #include "ricochet/io/scene/diagnostics.h"
 
 namespace ricochet::detail {

@@ -1,4 +1,4 @@
-#include "ricochet/geometry/mesh/mesh_topology.h"
+#include "inspect/mesh_topology.h"
 
 #include <OpenMesh/Core/System/config.h>
 
@@ -11,79 +11,20 @@
 
 #include "ricochet/core/disjoint_sets.h"
 #include "ricochet/geometry/mesh/closed_surface.h"
+#include "ricochet/geometry/mesh/edge_table.h"
 
 namespace ricochet {
 
-EdgeTable::EdgeTable(const FaceList& faces, std::size_t vertex_count)
-    : begin_(vertex_count + 1, 0), uses_(faces.corners.size()) {
-    const auto ends = [&](std::size_t corner) {
-        return std::minmax(faces.corners[corner], faces.corners[faces.next_corner[corner]]);
-    };
-    const std::size_t count = faces.corners.size();
-    for (std::size_t corner = 0; corner < count; ++corner) ++begin_[ends(corner).first + 1];
-    for (std::size_t v = 0; v < vertex_count; ++v) begin_[v + 1] += begin_[v];
-    std::vector<std::uint32_t> end(begin_.begin(), begin_.end() - 1);
-    for (std::uint32_t corner = 0; corner < count; ++corner) {
-        const auto [smaller, larger] = ends(corner);
-        uses_[end[smaller]++] = {larger, corner};
-    }
-    for (std::size_t v = 0; v < vertex_count; ++v) {
-        std::sort(uses_.begin() + begin_[v], uses_.begin() + begin_[v + 1], [](const Use& a, const Use& b) {
-            return a.larger_vertex != b.larger_vertex ? a.larger_vertex < b.larger_vertex : a.corner < b.corner;
-        });
-    }
-}
-
 namespace {
-
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 using Corners = std::span<const std::uint32_t>;
 
-// Adds a face. Equal neighbouring corners count once. A face with fewer than three remaining corners is not added.
-void add_face(Corners corners, FaceList& faces) {
-    const std::size_t first = faces.corners.size();
-    for (const std::uint32_t corner : corners) {
-        if (faces.corners.size() == first || faces.corners.back() != corner) faces.corners.push_back(corner);
-    }
-    while (faces.corners.size() > first + 1 && faces.corners.back() == faces.corners[first]) faces.corners.pop_back();
-    if (faces.corners.size() < first + 3) {
-        faces.corners.resize(first);
-        return;
-    }
-    const auto begin = static_cast<std::uint32_t>(first);
-    const auto end = static_cast<std::uint32_t>(faces.corners.size());
-    for (std::uint32_t c = begin; c < end; ++c) faces.next_corner.push_back(c + 1 < end ? c + 1 : begin);
-    faces.face_offsets.push_back(end);
-}
-
-FaceList with_room_for(std::size_t face_count, std::size_t corner_count) {
-    FaceList faces;
-    faces.corners.reserve(corner_count);
-    faces.next_corner.reserve(corner_count);
-    faces.face_offsets.reserve(face_count + 1);
-    faces.face_offsets.push_back(0);
-    return faces;
-}
-
-FaceList faces_of(const PolygonMesh& mesh) {
-    FaceList faces = with_room_for(mesh.face_count(), mesh.corners.size());
-    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-        const std::uint32_t begin = mesh.face_offsets[f];
-        add_face(Corners(mesh.corners.data() + begin, mesh.face_offsets[f + 1] - begin), faces);
-    }
-    return faces;
-}
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 // Triangles are contiguous in memory, and so are their corners.
 Corners corners_of(const TriangleMesh& mesh) {
     if (mesh.triangles.empty()) return {};
     return {mesh.triangles.front().data(), 3 * mesh.triangles.size()};
-}
-
-// Returns true if exactly one half-edge runs along the edge in each direction. Two such half-edges can be joined.
-bool is_manifold_edge(const FaceList& faces, std::span<const std::uint32_t> uses) {
-    return uses.size() == 2 && faces.corners[uses[0]] != faces.corners[uses[1]];
 }
 
 // Joins the corners of two half-edges at both ends of their edge.
@@ -151,51 +92,7 @@ std::size_t count_unnamed(Corners corners, std::size_t vertex_count) {
     return static_cast<std::size_t>(std::count(named.begin(), named.end(), 0));
 }
 
-/// Returns, in increasing order, the faces whose corners equal the corners of an earlier face after normalize(corners).
-template <class Normalize>
-std::vector<std::uint32_t> faces_with_earlier_equals(const FaceList& faces, const Normalize& normalize) {
-    const std::size_t count = faces.face_count();
-    std::vector<std::uint32_t> normal = faces.corners;
-    std::vector<std::uint32_t> order(count);
-    const auto corners_of = [&](std::uint32_t f) {
-        return std::span(normal.data() + faces.face_offsets[f], faces.face_offsets[f + 1] - faces.face_offsets[f]);
-    };
-    for (std::uint32_t f = 0; f < count; ++f) {
-        order[f] = f;
-        normalize(corners_of(f));
-    }
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        const auto by_corners = std::lexicographical_compare_three_way(corners_of(a).begin(), corners_of(a).end(),
-                                                                       corners_of(b).begin(), corners_of(b).end());
-        return by_corners != 0 ? by_corners < 0 : a < b;
-    });
-    std::vector<std::uint32_t> later;
-    for (std::size_t i = 1; i < count; ++i) {
-        if (std::ranges::equal(corners_of(order[i - 1]), corners_of(order[i]))) later.push_back(order[i]);
-    }
-    std::sort(later.begin(), later.end());
-    return later;
-}
-
 }  // namespace
-
-FaceList faces_of(const TriangleMesh& mesh, std::vector<std::uint32_t>* numbers) {
-    FaceList faces = with_room_for(mesh.triangles.size(), 3 * mesh.triangles.size());
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-        const std::size_t count = faces.face_count();
-        add_face(mesh.triangles[t], faces);
-        if (numbers != nullptr && faces.face_count() > count) numbers->push_back(t);
-    }
-    return faces;
-}
-
-std::vector<std::uint32_t> faces_of_corners(const FaceList& faces) {
-    std::vector<std::uint32_t> face_of(faces.corners.size());
-    for (std::uint32_t f = 0; f < faces.face_count(); ++f) {
-        std::fill(face_of.begin() + faces.face_offsets[f], face_of.begin() + faces.face_offsets[f + 1], f);
-    }
-    return face_of;
-}
 
 // The half-edge mesh is assembled from the edge table instead of with OpenMesh's add_face(). That function searches all
 // edges of a vertex for every face, which takes quadratic time at the tip of a large fan. It also refuses non-manifold
@@ -212,7 +109,6 @@ struct MeshTopology::Impl {
     void add_edges(const FaceList& faces, const EdgeTable& edges);
     void add_faces(const FaceList& faces);
     void close_gaps();
-    [[nodiscard]] std::uint32_t vertex_across(OpenMesh::HalfedgeHandle halfedge) const;
     [[nodiscard]] std::vector<std::uint32_t> loop_from(OpenMesh::HalfedgeHandle start,
                                                        std::vector<char>& visited) const;
 
@@ -313,14 +209,6 @@ std::vector<std::uint32_t> MeshTopology::Impl::loop_from(OpenMesh::HalfedgeHandl
     return loop;
 }
 
-std::uint32_t MeshTopology::Impl::vertex_across(OpenMesh::HalfedgeHandle halfedge) const {
-    if (mesh.is_boundary(halfedge)) return kNoVertex;
-    const OpenMesh::HalfedgeHandle next = mesh.next_halfedge_handle(halfedge);
-    const OpenMesh::HalfedgeHandle after = mesh.next_halfedge_handle(next);
-    if (mesh.next_halfedge_handle(after) != halfedge) return kNoVertex;
-    return vertex_of_fan[index_of(mesh.to_vertex_handle(next))];
-}
-
 MeshTopology::MeshTopology(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {
     impl_->report.boundary_loops = boundary_loops().size();
 }
@@ -349,44 +237,6 @@ std::vector<std::vector<std::uint32_t>> MeshTopology::boundary_loops() const {
         if (!loop.empty()) loops.push_back(std::move(loop));
     }
     return loops;
-}
-
-// The half-edge structure stores a cut edge once for every face along it. These copies become one edge without
-// neighbours.
-std::vector<MeshEdge> MeshTopology::edges() const {
-    std::vector<MeshEdge> edges;
-    const OpenMesh::PolyConnectivity& mesh = impl_->mesh;
-    edges.reserve(mesh.n_edges());
-    for (std::size_t e = 0; e < mesh.n_edges(); ++e) {
-        const OpenMesh::HalfedgeHandle along = mesh.halfedge_handle(OpenMesh::EdgeHandle(static_cast<int>(e)), 0);
-        const OpenMesh::HalfedgeHandle back = mesh.opposite_halfedge_handle(along);
-        const auto [first, second] = std::minmax(impl_->vertex_of_fan[index_of(mesh.from_vertex_handle(along))],
-                                                 impl_->vertex_of_fan[index_of(mesh.to_vertex_handle(along))]);
-        edges.push_back({first, second, {impl_->vertex_across(along), impl_->vertex_across(back)}});
-    }
-    const auto key = [](const MeshEdge& edge) { return std::pair(edge.first, edge.second); };
-    std::stable_sort(edges.begin(), edges.end(), [&](const MeshEdge& a, const MeshEdge& b) { return key(a) < key(b); });
-    std::size_t kept = 0;
-    for (const MeshEdge& edge : edges) {
-        if (kept > 0 && key(edges[kept - 1]) == key(edge)) {
-            edges[kept - 1].opposite = {kNoVertex, kNoVertex};
-        } else {
-            edges[kept++] = edge;
-        }
-    }
-    edges.resize(kept);
-    return edges;
-}
-
-std::vector<std::uint32_t> repeated_faces(const FaceList& faces) {
-    return faces_with_earlier_equals(faces, [](std::span<std::uint32_t> corners) { std::ranges::sort(corners); });
-}
-
-std::vector<std::uint32_t> copied_faces(const FaceList& faces) {
-    return faces_with_earlier_equals(faces, [](std::span<std::uint32_t> corners) {
-        // std::ranges::rotate() is not used, because clang 14 cannot compile it with this standard library.
-        std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
-    });
 }
 
 std::size_t count_unused_vertices(const TriangleMesh& mesh) {

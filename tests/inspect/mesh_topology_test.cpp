@@ -1,4 +1,4 @@
-#include "ricochet/geometry/mesh/mesh_topology.h"
+#include "inspect/mesh_topology.h"
 
 #include <gtest/gtest.h>
 
@@ -50,38 +50,6 @@ TEST(MeshTopology, FindsTheLoopOfAMissingFace) {
     std::vector<std::uint32_t> loop = topology.boundary_loops()[0];
     std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
     EXPECT_EQ(loop, (std::vector<std::uint32_t>{0, 3, 2, 1}));
-}
-
-TEST(MeshTopology, ListsEveryEdgeOnceWithItsOppositeCorners) {
-    const std::vector<MeshEdge> edges = MeshTopology(faces(4, {{0, 1, 2}, {2, 1, 3}})).edges();
-    ASSERT_EQ(edges.size(), 5U);
-    const auto is = [&](std::size_t i, std::uint32_t first, std::uint32_t second,
-                        const std::set<std::uint32_t>& across) {
-        EXPECT_EQ(edges[i].first, first);
-        EXPECT_EQ(edges[i].second, second);
-        EXPECT_EQ((std::set<std::uint32_t>{edges[i].opposite[0], edges[i].opposite[1]}), across) << first << second;
-    };
-    is(0, 0, 1, {2, kNoVertex});
-    is(1, 0, 2, {1, kNoVertex});
-    is(2, 1, 2, {0, 3});
-    is(3, 1, 3, {2, kNoVertex});
-    is(4, 2, 3, {1, kNoVertex});
-}
-
-TEST(MeshTopology, ListsAnEdgeOfThreeFacesOnceAndWithoutNeighbours) {
-    const std::vector<MeshEdge> edges = MeshTopology(faces(5, {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}})).edges();
-    ASSERT_EQ(edges.size(), 7U);
-    EXPECT_EQ(edges[0].first, 0U);
-    EXPECT_EQ(edges[0].second, 1U);
-    EXPECT_EQ(edges[0].opposite, (std::array<std::uint32_t, 2>{kNoVertex, kNoVertex}));
-}
-
-TEST(MeshTopology, EdgesOfQuadsHaveNoOppositeCorners) {
-    const std::vector<MeshEdge> edges = MeshTopology(faces(8, kCube)).edges();
-    EXPECT_EQ(edges.size(), 12U);
-    for (const MeshEdge& edge : edges) {
-        EXPECT_EQ(edge.opposite, (std::array<std::uint32_t, 2>{kNoVertex, kNoVertex}));
-    }
 }
 
 TEST(MeshTopology, SeparatesLoopsThatShareAVertex) {

@@ -1,11 +1,10 @@
 /// \file
-/// The names that refer to faces of a mesh file.
+/// Numbers of triangles for every name in a mesh file.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "ricochet/geometry/mesh/mesh_reader.h"
@@ -25,9 +24,6 @@ struct NamedTriangles {
     std::string name;
     std::size_t triangles = 0;  ///< number of triangles with this name, regardless of their other names
 };
-
-/// Returns the words of a text, which are separated by blanks.
-[[nodiscard]] std::vector<std::string_view> words_of(std::string_view text);
 
 /// Returns every name that triangles of a mesh have: materials, groups, then objects. Each kind is in the order in
 /// which the file first uses the names. A group is a whole line. If the line has several words, each word follows the

@@ -1,8 +1,10 @@
-#include "ricochet/geometry/mesh/face_names.h"
+#include "inspect/face_names.h"
 
-#include <algorithm>
 #include <map>
 #include <set>
+#include <string_view>
+
+#include "ricochet/geometry/mesh/face_group_table.h"
 
 namespace ricochet {
 namespace {
@@ -35,17 +37,6 @@ void add_group(NameCounts& counts, std::string_view line, std::size_t triangles)
 }
 
 }  // namespace
-
-std::vector<std::string_view> words_of(std::string_view text) {
-    constexpr std::string_view kBlanks = " \t";
-    std::vector<std::string_view> words;
-    for (std::size_t at = text.find_first_not_of(kBlanks); at != std::string_view::npos;) {
-        const std::size_t end = std::min(text.find_first_of(kBlanks, at), text.size());
-        words.push_back(text.substr(at, end - at));
-        at = text.find_first_not_of(kBlanks, end);
-    }
-    return words;
-}
 
 std::vector<NamedTriangles> named_triangles(const ImportedMesh& imported) {
     const PolygonMesh& mesh = imported.polygons;

@@ -1,4 +1,4 @@
-#include "ricochet/geometry/mesh/mesh_openings.h"
+#include "inspect/mesh_openings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <numbers>
 #include <span>
 
+#include "inspect/mesh_topology.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/geometry/mesh/closed_surface.h"
-#include "ricochet/geometry/mesh/mesh_topology.h"
 
 namespace ricochet {
 namespace {
@@ -69,20 +69,6 @@ std::vector<MeshOpening> openings_of(const TriangleMesh& mesh) {
         openings.push_back({width_of(mesh, loop), box.diagonal()});
     }
     return openings;
-}
-
-double winding_number(const TriangleMesh& mesh, const Vec3& p) {
-    double sum = 0.0;
-    for (const Triangle& t : mesh.triangles) {
-        const Vec3 a = mesh.vertices[t[0]] - p;
-        const Vec3 b = mesh.vertices[t[1]] - p;
-        const Vec3 c = mesh.vertices[t[2]] - p;
-        const double la = length(a);
-        const double lb = length(b);
-        const double lc = length(c);
-        sum += std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
-    }
-    return sum / (2.0 * std::numbers::pi);
 }
 
 }  // namespace ricochet

@@ -4,11 +4,16 @@
 #include <cstddef>
 #include <variant>
 
-#include "ricochet/core/tolerances.h"
 #include "ricochet/verify/parity.h"
 
 namespace ricochet {
 namespace {
+
+/// Distance, as a fraction of the largest coordinate, below which two crossings of a segment through neighbouring
+/// triangles count as one. Reason: a segment through an edge crosses both triangles at points that differ only by
+/// rounding. Smaller: such a crossing counts twice, so that the parity for an open surface indicates no crossing.
+/// Larger: the two faces of a thin plate count as one. Local: only the comparison counts crossings.
+constexpr double kSameCrossing = 1e-9;
 
 bool same_position(const Vec3& a, const Vec3& b) {
     return max_abs(a - b) <= kSameCrossing * std::max(max_abs(a), max_abs(b));

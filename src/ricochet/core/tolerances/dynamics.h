@@ -57,7 +57,7 @@ inline constexpr double kCoincidentDistance = 1e-100;
 inline constexpr double kMaxSpeed = 299792458.0;
 
 /// Largest coordinate of a mesh or plane, in m, and largest state of a particle before it is frozen. Reason: the
-/// predicates multiply three coordinates and must not overflow. The limit is far below kLargestExactCoordinate.
+/// predicates multiply three coordinates and must not overflow. They are exact up to 2^300 m.
 inline constexpr double kLargestCoordinate = 1e75;
 
 /// Smallest size of a surface, in m: the extent of a mesh, the diameter and height of a shape. Reason: coordinates

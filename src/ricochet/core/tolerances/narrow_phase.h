@@ -34,12 +34,6 @@ inline constexpr double kMinApproach = 0x1p-48;
 /// decides between the sides of very sharp edges. Larger: edges sharper than this angle, in rad, have no sides.
 inline constexpr double kPseudonormalRounding = 0x1p-44;
 
-/// Distance, as a fraction of the largest coordinate, below which two crossings of a segment through neighbouring
-/// triangles count as one. Reason: a segment through an edge crosses both triangles at points that differ only by
-/// rounding. Smaller: such a crossing counts twice, so that the parity for an open surface indicates no crossing.
-/// Larger: the two faces of a thin plate count as one.
-inline constexpr double kSameCrossing = 1e-9;
-
 /// Approach speed towards a deforming triangle, as a fraction of the relative speed, below which a point moves along
 /// the triangle. Reason: the limit covers rounding of the normal and of the velocity. Smaller: sliding points hit the
 /// triangle again by rounding. Larger: only the certificate finds slow approaches.

@@ -22,8 +22,6 @@ struct Point2 {
     friend constexpr bool operator==(const Point2&, const Point2&) = default;
 };
 
-/// Largest coordinate magnitude for which the predicates are exact. Local: a bound that the proof of exactness needs.
-inline constexpr double kLargestExactCoordinate = 0x1p300;
 /// Smallest coordinate magnitude. Smaller coordinates are replaced by zero, which keeps every product inside the range
 /// of doubles. Local: a bound that the proof of exactness needs.
 inline constexpr double kSmallestExactCoordinate = 0x1p-287;

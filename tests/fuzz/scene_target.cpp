@@ -14,7 +14,7 @@ namespace ricochet::fuzz {
 namespace {
 
 /// Returns true if a scene names other files or requests too many particles for fuzzing. Ordinary scenes may do both.
-bool is_beyond_the_fuzzer(const detail::JsonMember& member) {
+bool is_beyond_the_fuzzer(const JsonMember& member) {
     constexpr double kMostNodes = 64;
     const std::string& key = member.key;
     if (key == "file") {
@@ -25,12 +25,12 @@ bool is_beyond_the_fuzzer(const detail::JsonMember& member) {
     return makes_particles && member.value.number().value_or(0.0) > kMostNodes;
 }
 
-bool is_beyond_the_fuzzer(const detail::JsonNode& node) {
+bool is_beyond_the_fuzzer(const JsonNode& node) {
     if (const auto* items = node.array()) {
         return std::any_of(items->begin(), items->end(), [](const auto& item) { return is_beyond_the_fuzzer(item); });
     }
     if (node.object() == nullptr) return false;
-    return std::any_of(node.object()->begin(), node.object()->end(), [](const detail::JsonMember& member) {
+    return std::any_of(node.object()->begin(), node.object()->end(), [](const JsonMember& member) {
         return is_beyond_the_fuzzer(member) || is_beyond_the_fuzzer(member.value);
     });
 }
@@ -40,7 +40,7 @@ bool is_beyond_the_fuzzer(const detail::JsonNode& node) {
 bool fuzz_scene(std::string_view bytes) {
     const std::filesystem::path file = std::filesystem::path(RICOCHET_SOURCE_DIR) / "tests/fuzz/scene_files/fuzz.json";
     detail::Diagnostics unused("", {});
-    const std::optional<detail::JsonNode> root = detail::parse_json(bytes, unused);
+    const std::optional<JsonNode> root = detail::parse_json(bytes, unused);
     if (root && is_beyond_the_fuzzer(*root)) return false;
     try {
         SceneDescription scene = parse_scene(bytes, file);

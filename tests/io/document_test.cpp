@@ -132,7 +132,7 @@ TEST(JsonParser, DeepNestingIsRefusedWithoutRecursion) {
 
 TEST(JsonParser, NumberOfValuesIsBounded) {
     std::string text = "[";
-    for (std::size_t i = 0; i < kMostValues; ++i) text += "0,";
+    for (std::size_t i = 0; i < kMostJsonValues; ++i) text += "0,";
     EXPECT_NE(only_error(text + "0]").find("more than 4000000 values"), std::string::npos);
 }
 

@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "ricochet/collision/collider_list.h"
 #include "ricochet/collision/collision_world.h"
 #include "ricochet/collision/deforming_colliders.h"
 #include "ricochet/core/box3.h"

@@ -7,6 +7,7 @@
 
 #include "ricochet/core/parallel.h"
 #include "ricochet/dynamics/implicit_euler.h"
+#include "ricochet/dynamics/mutual_forces.h"
 
 namespace ricochet {
 namespace {

@@ -47,7 +47,7 @@ SceneDescription read_scene(const std::filesystem::path& file, const std::vector
 SceneDescription parse_scene(std::string_view text, const std::filesystem::path& file,
                              const std::vector<std::string>& overrides) {
     detail::Diagnostics diagnostics(file.string(), overrides);
-    std::optional<detail::JsonNode> root = detail::parse_json(text, diagnostics);
+    std::optional<JsonNode> root = detail::parse_json(text, diagnostics);
     if (!root && mesh_format_of(file)) {
         throw SceneError({printable(file.string(), 1000) +
                           ": found a mesh file, expected a scene: `ricochet info` describes a mesh, and `ricochet new` "

@@ -7,6 +7,9 @@
 #include <iterator>
 #include <utility>
 
+#include "ricochet/core/error.h"
+#include "ricochet/core/printable.h"
+
 namespace ricochet::detail {
 namespace {
 

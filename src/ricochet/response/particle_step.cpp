@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "ricochet/collision/moving_sweep.h"
 #include "ricochet/collision/surfaces_in_other_frames.h"
 
 namespace ricochet {

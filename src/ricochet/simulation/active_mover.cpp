@@ -8,6 +8,7 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/rollback.h"
 #include "ricochet/simulation/cloud_motion.h"
+#include "ricochet/simulation/heat_stage.h"
 
 namespace ricochet {
 

@@ -11,6 +11,7 @@
 #include "ricochet/dynamics/flight.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/sweep/path.h"
 #include "ricochet/response/contact_record.h"
 
 namespace ricochet {

@@ -9,6 +9,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
+#include "ricochet/simulation/cloud_motion.h"
 #include "ricochet/simulation/flight_knots.h"
 
 namespace ricochet {

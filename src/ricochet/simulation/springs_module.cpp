@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
+#include "ricochet/simulation/pair_motion.h"
 
 namespace ricochet {
 

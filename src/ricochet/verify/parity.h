@@ -16,6 +16,7 @@
 #include "ricochet/core/box3.h"
 #include "ricochet/core/vec3.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
+#include "ricochet/verify/verifier.h"
 
 namespace ricochet {
 

@@ -11,9 +11,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
+#include "ricochet/core/json_document.h"
 #include "ricochet/geometry/mesh/mesh_source.h"
 
 namespace ricochet {
@@ -21,28 +21,9 @@ namespace ricochet {
 /// Extension that hides nodes. It is the only extension that is stored.
 inline constexpr std::string_view kGltfVisibility = "KHR_node_visibility";
 
-struct GltfMember;
-
-/// One JSON value.
-struct GltfValue {
-    using Array = std::vector<GltfValue>;
-    using Object = std::vector<GltfMember>;
-    /// Whole numbers >= 0 are std::uint64_t, and all others are double.
-    std::variant<std::monostate, bool, std::uint64_t, double, std::string, Array, Object> value;
-
-    /// Returns the value of a key, or a null pointer if this is not an object or lacks the key.
-    [[nodiscard]] const GltfValue* find(std::string_view key) const;
-};
-
-/// One key with its value.
-struct GltfMember {
-    std::string key;
-    GltfValue value;
-};
-
 /// Parses the JSON of a glTF file. Throws InputError if the text is not JSON or not an object, or if a key appears
 /// twice. It also throws if more than 4 million values would be stored.
-[[nodiscard]] GltfValue parse_gltf_json(const MeshSource& source, std::string_view text);
+[[nodiscard]] JsonNode parse_gltf_json(const MeshSource& source, std::string_view text);
 
 class GltfLocation;
 
@@ -50,7 +31,7 @@ class GltfLocation;
 class GltfList {
 public:
     /// Makes a list. `items` is a null pointer if the list is missing.
-    GltfList(const MeshSource& source, const GltfValue::Array* items, std::string path)
+    GltfList(const MeshSource& source, const JsonNode::Array* items, std::string path)
         : source_(&source), items_(items), path_(std::move(path)) {}
 
     [[nodiscard]] std::size_t size() const { return items_ == nullptr ? 0 : items_->size(); }
@@ -58,7 +39,7 @@ public:
 
 private:
     const MeshSource* source_;
-    const GltfValue::Array* items_;
+    const JsonNode::Array* items_;
     std::string path_;
 };
 
@@ -67,7 +48,7 @@ private:
 /// long as the source and the document exist.
 class GltfLocation {
 public:
-    GltfLocation(const MeshSource& source, const GltfValue& value, std::string path)
+    GltfLocation(const MeshSource& source, const JsonNode& value, std::string path)
         : source_(&source), value_(&value), path_(std::move(path)) {}
 
     /// Throws InputError "file: path: what".
@@ -99,7 +80,7 @@ private:
     [[noreturn]] void fail_expected(std::string_view what) const;
 
     const MeshSource* source_;
-    const GltfValue* value_;
+    const JsonNode* value_;
     std::string path_;
 };
 

@@ -268,7 +268,7 @@ bool looks_like_glb(const MeshSource& source) { return source.bytes.starts_with(
 ImportedMesh read_gltf(const MeshSource& source, const std::optional<std::filesystem::path>& folder,
                        std::size_t free_corners) {
     GltfParts parts = parts_of(source);
-    const GltfValue root = parse_gltf_json(source, parts.json);
+    const JsonNode root = parse_gltf_json(source, parts.json);
     const GltfLocation document(source, root, "");
     const GltfLocation asset = document.at("asset");
     const std::string version = asset.at("version").text();

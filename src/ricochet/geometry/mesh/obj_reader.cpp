@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 
+#include "ricochet/geometry/mesh/face_group_table.h"
 #include "ricochet/geometry/mesh/triangulation.h"
 
 namespace ricochet {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 
+#include "ricochet/core/double_double.h"
 #include "ricochet/core/vec3.h"
 #include "ricochet/geometry/shapes/ellipsoid.h"
 

@@ -8,7 +8,9 @@
 #include <span>
 
 #include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/geometry/predicates/triangle_plane.h"
+#include "ricochet/geometry/sweep/closest_point.h"
 #include "ricochet/geometry/sweep/path.h"
 #include "ricochet/geometry/sweep/polynomial.h"
 #include "ricochet/geometry/sweep/sphere_sweep.h"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <utility>
 
 #include "ricochet/core/hash.h"
@@ -15,46 +14,6 @@
 #include "ricochet/io/scene_forces.h"
 
 namespace ricochet::detail {
-
-// Nodes, and descriptions of their values for messages.
-
-std::optional<double> JsonNode::number() const {
-    if (const auto* whole = std::get_if<std::uint64_t>(&value)) return static_cast<double>(*whole);
-    if (const auto* negative = std::get_if<std::int64_t>(&value)) return static_cast<double>(*negative);
-    if (const auto* real = std::get_if<double>(&value)) return *real;
-    return std::nullopt;
-}
-
-std::optional<std::uint64_t> JsonNode::whole_number() const {
-    if (const auto* whole = std::get_if<std::uint64_t>(&value)) return *whole;
-    const auto* real = std::get_if<double>(&value);
-    if (real == nullptr || !(*real >= 0.0 && *real < 0x1p64) || *real != std::floor(*real)) return std::nullopt;
-    return static_cast<std::uint64_t>(*real);
-}
-
-const JsonNode* JsonNode::find(std::string_view key) const {
-    const Object* members = object();
-    if (members == nullptr) return nullptr;
-    for (const JsonMember& member : *members) {
-        if (member.key == key) return &member.value;
-    }
-    return nullptr;
-}
-
-JsonNode* JsonNode::find(std::string_view key) { return const_cast<JsonNode*>(std::as_const(*this).find(key)); }
-
-std::string described(const JsonNode& node) {
-    constexpr std::size_t kLongestText = 60;
-    if (const auto* truth = std::get_if<bool>(&node.value)) return *truth ? "true" : "false";
-    if (const auto* whole = std::get_if<std::uint64_t>(&node.value)) return fmt::format("{}", *whole);
-    if (const auto* negative = std::get_if<std::int64_t>(&node.value)) return fmt::format("{}", *negative);
-    if (const auto* real = std::get_if<double>(&node.value)) return fmt::format("{}", *real);
-    if (const std::string* text = node.text()) return fmt::format("\"{}\"", printable(*text, kLongestText));
-    if (const auto* items = node.array())
-        return items->empty() ? "an empty list" : fmt::format("a list of {}", items->size());
-    if (node.object() != nullptr) return "an object";
-    return "null";
-}
 
 // Changes from the command line.
 
@@ -275,13 +234,13 @@ namespace {
 
 /// Converts all numbers to doubles and sorts all keys, so that equal values have equal hashes. For example, 2 and 2.0
 /// become equal.
-void make_plain(detail::JsonNode& node) {
+void make_plain(JsonNode& node) {
     if (const auto number = node.number()) node.value = *number;
-    if (detail::JsonNode::Array* list = node.array()) {
-        for (detail::JsonNode& entry : *list) make_plain(entry);
+    if (JsonNode::Array* list = node.array()) {
+        for (JsonNode& entry : *list) make_plain(entry);
     }
-    if (detail::JsonNode::Object* object = node.object()) {
-        for (detail::JsonMember& member : *object) make_plain(member.value);
+    if (JsonNode::Object* object = node.object()) {
+        for (JsonMember& member : *object) make_plain(member.value);
         std::sort(object->begin(), object->end(), [](const auto& a, const auto& b) { return a.key < b.key; });
     }
 }
@@ -290,13 +249,13 @@ void make_plain(detail::JsonNode& node) {
 
 std::uint64_t forces_fingerprint(std::string_view text, const std::vector<std::string>& overrides) {
     detail::Diagnostics diagnostics("scene", overrides);
-    std::optional<detail::JsonNode> root = detail::parse_json(text, diagnostics);
+    std::optional<JsonNode> root = detail::parse_json(text, diagnostics);
     if (!root) throw SceneError(diagnostics.errors());
     for (std::size_t i = 0; i < overrides.size(); ++i) detail::apply_override(*root, i, diagnostics);
     StateHash hash;
     const detail::ValueHasher hasher(hash);
     for (const std::string_view key : {"forces", "particle_forces", "flows"}) {
-        detail::JsonNode* const node = root->find(key);
+        JsonNode* const node = root->find(key);
         const bool has_any = node != nullptr && ((node->array() != nullptr && !node->array()->empty()) ||
                                                  (node->object() != nullptr && !node->object()->empty()));
         if (has_any) make_plain(*node);

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
-#include <utility>
-#include <vector>
+#include <span>
 
 #include "ricochet/core/printable.h"
 #include "ricochet/io/scene/diagnostics.h"
@@ -13,8 +11,6 @@
 namespace ricochet::detail {
 
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr std::string_view kSpace = " \t\r\n";
 constexpr std::string_view kMarks = "{}[],:";
@@ -132,50 +128,39 @@ std::optional<Hint> hint_for(std::string_view text, std::size_t position, std::s
     return Hint{token.begin, fmt::format("a {} is missing before {}", mark, shown(token))};
 }
 
-// Returns the message of the JSON library without its prefix and location.
+// Returns the message of the JSON library without its location.
 std::string plain_message(std::string message) {
-    if (const auto bracket = message.find("] "); bracket != std::string::npos) message.erase(0, bracket + 2);
+    constexpr std::size_t kLongest = 200;
     if (message.starts_with("parse error at ")) {
         if (const auto colon = message.find(": "); colon != std::string::npos) message.erase(0, colon + 2);
     }
-    return printable(message, kLongestMessage);
+    return printable(message, kLongest);
 }
 
-// Builds the tree of nodes. An open container is the last element of its parent, so pointers to open containers stay
-// valid.
-class TreeBuilder final : public nlohmann::json_sax<Json> {
+// Finds locations, and reports errors with them.
+class SceneListener final : public JsonListener {
 public:
-    TreeBuilder(std::string_view text, Diagnostics& diagnostics)
+    SceneListener(std::string_view text, Diagnostics& diagnostics)
         : text_(text), locations_(text), diagnostics_(diagnostics) {}
 
-    bool null() override { return add(std::monostate{}); }
-    bool boolean(bool value) override { return add(value); }
-    bool number_integer(std::int64_t value) override { return add(value); }
-    bool number_unsigned(std::uint64_t value) override { return add(value); }
-    bool number_float(double value, const std::string& /*written*/) override { return add(value); }
-    bool string(std::string& value) override { return add(std::move(value)); }
-    bool binary(Json::binary_t& /*value*/) override { return false; }
-    bool start_object(std::size_t /*count*/) override { return open(JsonNode::Object{}); }
-    bool start_array(std::size_t /*count*/) override { return open(JsonNode::Array{}); }
-
-    bool key(std::string& value) override {
-        open_.back()->object()->push_back({std::move(value), locations_.next(), {}});
-        return true;
+    SourceLocation next_location() override { return locations_.next(); }
+    void refuse(const SourceLocation& location, const std::string& error) override {
+        diagnostics_.error(location, "", error);
     }
-    bool end_object() override {
-        refuse_duplicates(*open_.back()->object());
-        return close();
-    }
-    bool end_array() override { return close(); }
-
-    bool parse_error(std::size_t position, const std::string& /*token*/, const Json::exception& error) override {
-        const std::optional<Hint> hint = hint_for(text_, position, error.what());
+    void refuse_syntax(std::size_t position, const std::string& error) override {
+        const std::optional<Hint> hint = hint_for(text_, position, error);
         const SourceLocation location = location_of_byte(hint ? hint->position + 1 : position);
-        diagnostics_.error(location, "", "not valid JSON: " + (hint ? hint->text : plain_message(error.what())));
-        return false;
+        diagnostics_.error(location, "", "not valid JSON: " + (hint ? hint->text : plain_message(error)));
     }
-
-    JsonNode take() { return std::move(root_); }
+    void refuse_repetition(const JsonMember& member, std::span<JsonNode* const> open) override {
+        std::string path;
+        for (const JsonNode* outer : open.first(open.size() - 1)) {
+            if (const auto* items = outer->array()) path = path_of_item(path, items->size() - 1);
+            if (const auto* members = outer->object()) path = path_of_key(path, members->back().key);
+        }
+        diagnostics_.error(member.key_location, path_of_key(path, member.key),
+                           "the key appears twice in one object, keep one");
+    }
 
     /// Returns true if the text has no NUL byte. Otherwise reports an error, because the parser would read only the
     /// part before this byte.
@@ -192,81 +177,6 @@ public:
     }
 
 private:
-    template <typename Value>
-    bool add(Value value) {
-        return attach({std::move(value), locations_.next()}) != nullptr;
-    }
-
-    template <typename Container>
-    bool open(Container container) {
-        const SourceLocation location = locations_.next();
-        if (open_.size() == kDeepestNesting) {
-            diagnostics_.error(location, "",
-                               fmt::format("nested deeper than {} levels, no scene needs that", kDeepestNesting));
-            return false;
-        }
-        JsonNode* node = attach({std::move(container), location});
-        if (node == nullptr) return false;
-        open_.push_back(node);
-        return true;
-    }
-
-    bool close() {
-        (void)locations_.next();
-        open_.pop_back();
-        return true;
-    }
-
-    JsonNode* attach(JsonNode node) {
-        if (++count_ > kMostValues) {
-            diagnostics_.error(
-                node.location, "",
-                fmt::format("more than {} values; many particles belong in a file: \"particles\": {{\"file\": ...}}",
-                            kMostValues));
-            return nullptr;
-        }
-        if (open_.empty()) {
-            root_ = std::move(node);
-            return &root_;
-        }
-        if (auto* items = open_.back()->array()) return &items->emplace_back(std::move(node));
-        JsonMember& member = open_.back()->object()->back();
-        member.value = std::move(node);
-        return &member.value;
-    }
-
-    void refuse_duplicates(JsonNode::Object& members) {
-        std::vector<const JsonMember*> sorted;
-        for (const JsonMember& member : members) sorted.push_back(&member);
-        const auto by_key = [](const JsonMember* a, const JsonMember* b) { return a->key < b->key; };
-        std::stable_sort(sorted.begin(), sorted.end(), by_key);
-        std::vector<const JsonMember*> repeated;
-        for (std::size_t i = 1; i < sorted.size(); ++i) {
-            if (sorted[i]->key != sorted[i - 1]->key) continue;
-            repeated.push_back(sorted[i]);
-            diagnostics_.error(sorted[i]->key_location, path_of_key(path_of_open(), sorted[i]->key),
-                               "the key appears twice in one object, keep one");
-        }
-        if (repeated.empty()) return;
-        JsonNode::Object kept;
-        for (JsonMember& member : members) {
-            if (std::find(repeated.begin(), repeated.end(), &member) == repeated.end()) {
-                kept.push_back(std::move(member));
-            }
-        }
-        members = std::move(kept);
-    }
-
-    // Returns the path of the innermost open container for messages.
-    [[nodiscard]] std::string path_of_open() const {
-        std::string path;
-        for (std::size_t i = 0; i + 1 < open_.size(); ++i) {
-            if (const auto* items = open_[i]->array()) path = path_of_item(path, items->size() - 1);
-            if (const auto* members = open_[i]->object()) path = path_of_key(path, members->back().key);
-        }
-        return path;
-    }
-
     [[nodiscard]] SourceLocation location_of_byte(std::size_t position) const {
         SourceLocation location{1, 1};
         const std::size_t start = start_of(text_);
@@ -278,9 +188,6 @@ private:
     std::string_view text_;
     TokenLocations locations_;
     Diagnostics& diagnostics_;
-    JsonNode root_;
-    std::vector<JsonNode*> open_;
-    std::size_t count_ = 0;
 };
 
 void set_location(JsonNode& node, const SourceLocation& location) {
@@ -299,15 +206,13 @@ void set_location(JsonNode& node, const SourceLocation& location) {
 }  // namespace
 
 std::optional<JsonNode> parse_json(std::string_view text, Diagnostics& diagnostics) {
-    TreeBuilder builder(text, diagnostics);
-    if (!builder.is_text()) return std::nullopt;
-    constexpr bool kStrict = true;
-    constexpr bool kComments = true;
-    if (!Json::sax_parse(text.begin(), text.end(), &builder, nlohmann::detail::input_format_t::json, kStrict,
-                         kComments)) {
-        return std::nullopt;
-    }
-    return builder.take();
+    const JsonLimits limits{
+        64, "nested deeper than 64 levels, no scene needs that",
+        fmt::format("more than {} values; many particles belong in a file: \"particles\": {{\"file\": ...}}",
+                    kMostJsonValues),
+        true};
+    SceneListener listener(text, diagnostics);
+    return listener.is_text() ? read_json(text, limits, listener) : std::nullopt;
 }
 
 std::optional<JsonNode> parse_json_value(std::string_view text, const SourceLocation& location) {

@@ -12,6 +12,7 @@
 
 #include "ricochet/core/quad.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/response/contact_solver/contact_network.h"
 
 namespace ricochet {
 

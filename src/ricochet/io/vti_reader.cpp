@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/core/base64.h"
 #include "ricochet/core/memory_limit.h"
 #include "ricochet/io/scene/diagnostics.h"
 #include "ricochet/io/scene/files.h"
@@ -43,31 +44,16 @@ std::optional<T> next_number(std::string_view& text) {
     return value;
 }
 
-int base64_digit(char c) {
-    if (c >= 'A' && c <= 'Z') return c - 'A';
-    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-    if (c >= '0' && c <= '9') return c - '0' + 52;
-    if (c == '+') return 62;
-    return c == '/' ? 63 : -1;
-}
-
 // Decodes the first `wanted` bytes of a base64 text, or fewer if the text ends. Padding may occur within the text,
 // because some writers encode size and data separately.
 std::string base64_bytes(std::string_view text, std::uint64_t wanted) {
     std::string bytes;
-    std::uint32_t bits = 0;
-    int held = 0;
+    Base64Decoder decoder;
     for (const char c : text) {
         if (bytes.size() >= wanted) break;
-        const int digit = base64_digit(c);
         if (c == '=') {
-            bits = 0;
-            held = 0;
-        } else if (digit >= 0) {
-            bits = (bits << 6) | static_cast<std::uint32_t>(digit);
-            held += 6;
-            if (held >= 8) bytes += static_cast<char>((bits >> (held -= 8)) & 0xFF);
-        } else if (c != ' ' && c != '\n' && c != '\r' && c != '\t') {
+            decoder = {};
+        } else if (!decoder.add(c, bytes) && c != ' ' && c != '\n' && c != '\r' && c != '\t') {
             break;
         }
     }

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "ricochet/core/base64.h"
 #include "ricochet/core/memory_limit.h"
 
 namespace ricochet {
@@ -14,32 +15,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kNoDigit = -1;
-
-int base64_digit(char c) {
-    if (c >= 'A' && c <= 'Z') return c - 'A';
-    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-    if (c >= '0' && c <= '9') return c - '0' + 52;
-    if (c == '+' || c == '-') return 62;
-    return c == '/' || c == '_' ? 63 : kNoDigit;
-}
-
 std::string decode_base64(const GltfLocation& uri, std::string_view text) {
     while (!text.empty() && text.back() == '=') text.remove_suffix(1);
     if (text.size() % 4 == 1) uri.fail("its base64 data is cut off");
     require_memory(static_cast<double>(text.size()), "a buffer of a glTF file");
     std::string bytes;
     bytes.reserve(text.size() / 4 * 3 + 2);
-    std::uint32_t bits = 0;
-    int count = 0;
+    Base64Decoder decoder;
     for (const char c : text) {
-        const int digit = base64_digit(c);
-        if (digit == kNoDigit) uri.fail("its data is not base64");
-        bits = (bits << 6U | static_cast<std::uint32_t>(digit)) & 0xffffffU;
-        count += 6;
-        if (count < 8) continue;
-        count -= 8;
-        bytes += static_cast<char>(bits >> static_cast<unsigned>(count) & 0xffU);
+        if (!decoder.add(c, bytes)) uri.fail("its data is not base64");
     }
     return bytes;
 }

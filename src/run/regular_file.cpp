@@ -1,4 +1,4 @@
-#include "ricochet/core/regular_file.h"
+#include "run/regular_file.h"
 
 #include <fmt/format.h>
 

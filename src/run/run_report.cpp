@@ -14,9 +14,9 @@
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
-#include "ricochet/core/regular_file.h"
 #include "run/load_tables.h"
 #include "run/picture_files.h"
+#include "run/regular_file.h"
 
 namespace ricochet {
 

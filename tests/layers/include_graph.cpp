@@ -30,7 +30,7 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
         {"inspect", {"core", "geometry", "collision", "dynamics", "response", "simulation", "io"}},
         {"run", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io"}},
         // view: pictures, files of other formats, pages
-        {"render", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation"}},
+        {"render", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "run"}},
         {"export", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io", "run"}},
         {"page", {"core", "geometry", "dynamics", "io", "run", "render", "export"}},
         // lab: measurements

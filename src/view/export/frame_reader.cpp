@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "ricochet/core/regular_file.h"
 #include "ricochet/io/vtk_xml.h"
+#include "run/regular_file.h"
 #include "run/run_folder.h"
 #include "run/vtp_reader.h"
 

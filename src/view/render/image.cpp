@@ -18,7 +18,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/memory_limit.h"
 #include "ricochet/core/printable.h"
-#include "ricochet/core/regular_file.h"
+#include "run/regular_file.h"
 
 namespace ricochet {
 

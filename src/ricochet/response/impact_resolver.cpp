@@ -6,6 +6,7 @@
 
 #include "ricochet/core/random.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/response/along_surfaces.h"
 #include "ricochet/response/two_body_impact.h"
 
 namespace ricochet {

@@ -13,11 +13,11 @@
 
 #include "python/ctrl_c.h"
 #include "python/gil.h"
+#include "python/scene_forces.h"
 #include "ricochet/core/binary_archive.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
 #include "ricochet/core/printable.h"
-#include "ricochet/io/scene_forces.h"
 
 namespace ricochet::python {
 namespace {

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "ricochet/core/hash.h"
 #include "ricochet/core/json_document.h"
 
 namespace ricochet::detail {
@@ -26,6 +27,9 @@ class Diagnostics;
 /// `simulation.integrator=ballistic` needs no quotes. Adds missing objects and keys; a later check refuses unknown
 /// keys. List items must exist. Reports changes that cannot be applied.
 void apply_override(JsonNode& root, std::size_t number, Diagnostics& diagnostics);
+
+/// Adds a value to a hash. Different values add different sequences.
+void add_to_hash(StateHash& hash, const JsonNode& node);
 
 /// Returns a hash of the scene's values. It excludes the duration, and the keys for output and pictures. It depends on
 /// the order of keys in the file.

@@ -1,4 +1,4 @@
-#include "ricochet/io/scene_forces.h"
+#include "python/scene_forces.h"
 
 #include <gtest/gtest.h>
 

@@ -17,6 +17,17 @@
 namespace ricochet {
 namespace {
 
+/// Returns the mesh without the triangles that repeat an earlier one in the same winding. Vertices at equal positions
+/// must be joined before.
+TriangleMesh without_copies(const TriangleMesh& mesh) {
+    std::vector<std::uint32_t> number;  // triangle of each face
+    std::vector<std::uint32_t> copies = copied_faces(faces_of(mesh, &number));
+    for (std::uint32_t& face : copies) face = number[face];
+    TriangleMesh distinct{mesh.vertices, {}};
+    for_each_counted(mesh, copies, [&](std::uint32_t t) { distinct.triangles.push_back(mesh.triangles[t]); });
+    return distinct;
+}
+
 std::size_t count_degenerate(const TriangleMesh& mesh) {
     const auto without_area = [&mesh](const Triangle& t) {
         return are_collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);

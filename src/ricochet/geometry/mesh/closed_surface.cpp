@@ -64,14 +64,6 @@ ClosedSurface choose_by_shell(const FaceList& faces, const EdgeTable& edges, std
     return result;
 }
 
-/// Returns the mesh without the triangles in left_out, whose indices are in increasing order.
-TriangleMesh without(TriangleMesh mesh, const std::vector<std::uint32_t>& left_out) {
-    std::vector<Triangle> kept;
-    for_each_counted(mesh, left_out, [&](std::uint32_t t) { kept.push_back(mesh.triangles[t]); });
-    mesh.triangles = std::move(kept);
-    return mesh;
-}
-
 }  // namespace
 
 ClosedSurface closed_surface(const FaceList& faces, const EdgeTable& edges) {
@@ -107,14 +99,12 @@ TriangleMesh joined_by_position(const TriangleMesh& mesh) {
 }
 
 TriangleMesh counted_surface(const TriangleMesh& mesh) {
-    return without(joined_by_position(mesh), closed_surface(mesh).left_out);
-}
-
-TriangleMesh without_copies(const TriangleMesh& mesh) {
-    std::vector<std::uint32_t> number;  // triangle of each face
-    std::vector<std::uint32_t> copies = copied_faces(faces_of(mesh, &number));
-    for (std::uint32_t& face : copies) face = number[face];
-    return without(mesh, copies);
+    TriangleMesh counted = joined_by_position(mesh);
+    std::vector<Triangle> kept;
+    for_each_counted(mesh, closed_surface(mesh).left_out,
+                     [&](std::uint32_t t) { kept.push_back(counted.triangles[t]); });
+    counted.triangles = std::move(kept);
+    return counted;
 }
 
 }  // namespace ricochet

@@ -52,8 +52,4 @@ void for_each_counted(const TriangleMesh& mesh, const std::vector<std::uint32_t>
 /// closed_surface() leaves out.
 [[nodiscard]] TriangleMesh counted_surface(const TriangleMesh& mesh);
 
-/// Returns the mesh without the triangles that repeat an earlier one in the same winding. Vertices at equal positions
-/// must be joined before.
-[[nodiscard]] TriangleMesh without_copies(const TriangleMesh& mesh);
-
 }  // namespace ricochet

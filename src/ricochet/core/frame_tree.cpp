@@ -278,8 +278,7 @@ FrameTree::FrameTree(std::vector<FrameDescription> frames) : frames_(std::move(f
     for (const std::size_t i : parents_first(parents)) {
         const std::vector<FrameMotion>& motions = frames_[i].motions;
         const std::size_t parent = parents[i];
-        is_scaled_[i] =
-            (parent != kWorld && is_scaled_[parent]) || std::any_of(motions.begin(), motions.end(), is_scale);
+        is_scaled_[i] = (parent != kWorld && is_scaled_[parent]) || std::ranges::any_of(motions, is_scale);
         if (parent != kWorld) {
             const std::vector<std::size_t>& before = chains_[parent];
             chains_[i] = before.size() < kLongestChain ? before : std::vector{parent};
@@ -330,8 +329,7 @@ void FrameTree::step_into(MovingPose& pose, std::size_t frame, double time) cons
 }
 
 std::optional<std::size_t> FrameTree::find(std::string_view name) const {
-    const auto found =
-        std::find_if(frames_.begin(), frames_.end(), [&](const auto& frame) { return frame.name == name; });
+    const auto found = std::ranges::find_if(frames_, [&](const auto& frame) { return frame.name == name; });
     if (name.empty() || found == frames_.end()) return std::nullopt;
     return static_cast<std::size_t>(found - frames_.begin());
 }

@@ -144,7 +144,7 @@ double ordered_sum(std::size_t count, std::size_t block_size,
 // threads of its sort. No code of Ricochet runs inside the sort that could report the synchronisation.
 void parallel_sort(std::vector<std::uint64_t>& values) {
 #if defined(RICOCHET_THREAD_SANITIZER)
-    std::sort(values.begin(), values.end());
+    std::ranges::sort(values);
 #else
     tbb::parallel_sort(values.begin(), values.end());
 #endif
@@ -179,8 +179,7 @@ void sort_by_digit(const std::vector<KeyedIndex>& from, std::vector<KeyedIndex>&
 void parallel_sort(std::vector<KeyedIndex>& items, std::vector<KeyedIndex>& spare) {
     constexpr std::size_t kFew = 1024;
     if (items.size() < kFew) {
-        std::stable_sort(items.begin(), items.end(),
-                         [](const KeyedIndex& a, const KeyedIndex& b) { return a.key < b.key; });
+        std::ranges::stable_sort(items, [](const KeyedIndex& a, const KeyedIndex& b) { return a.key < b.key; });
         return;
     }
     spare.resize(items.size());

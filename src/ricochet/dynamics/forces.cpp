@@ -57,7 +57,7 @@ class ForceOnSome final : public Force {
 public:
     ForceOnSome(std::vector<std::uint64_t> ids, std::unique_ptr<Force> force)
         : ids_(std::move(ids)), force_(std::move(force)) {
-        std::sort(ids_.begin(), ids_.end());
+        std::ranges::sort(ids_);
     }
     [[nodiscard]] Vec3 acceleration(const ForceInput& input) const override {
         return holds(input.id) ? force_->acceleration(input) : Vec3{};
@@ -71,7 +71,7 @@ public:
     [[nodiscard]] const Force& force() const { return *force_; }
 
 private:
-    [[nodiscard]] bool holds(std::uint64_t id) const { return std::binary_search(ids_.begin(), ids_.end(), id); }
+    [[nodiscard]] bool holds(std::uint64_t id) const { return std::ranges::binary_search(ids_, id); }
 
     std::vector<std::uint64_t> ids_;  // sorted
     std::unique_ptr<Force> force_;
@@ -145,12 +145,10 @@ std::unique_ptr<Force> make_acceleration(std::function<Vec3(const ForceInput&)> 
 ForceField::ForceField(std::vector<std::unique_ptr<Force>> forces, bool adds_coupling)
     : forces_(without_null(std::move(forces))),
       adds_coupling_(adds_coupling),
-      uniform_(std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_uniform(); })),
-      steady_(std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_steady(); })),
-      conservative_(
-          std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_conservative(); })),
-      needs_temperature_(
-          std::any_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->needs_temperature(); })) {
+      uniform_(std::ranges::all_of(forces_, [](const auto& force) { return force->is_uniform(); })),
+      steady_(std::ranges::all_of(forces_, [](const auto& force) { return force->is_steady(); })),
+      conservative_(std::ranges::all_of(forces_, [](const auto& force) { return force->is_conservative(); })),
+      needs_temperature_(std::ranges::any_of(forces_, [](const auto& force) { return force->needs_temperature(); })) {
     for (std::size_t k = 0; k < forces_.size(); ++k) {
         const std::optional<Vec3> acceleration = forces_[k]->common_acceleration();
         if (acceleration && !is_finite(*acceleration)) {

@@ -150,8 +150,7 @@ Flight parabolic_flight(const ForceField& forces, const ForceInput& state, doubl
 }  // namespace
 
 std::string_view name_of(IntegratorKind kind) {
-    const auto found =
-        std::find_if(kNames.begin(), kNames.end(), [&](const auto& entry) { return entry.first == kind; });
+    const auto found = std::ranges::find_if(kNames, [&](const auto& entry) { return entry.first == kind; });
     return found == kNames.end() ? std::string_view() : found->second;
 }
 

@@ -43,8 +43,8 @@ void refuse_if_not_finite(const ParticlesForce& force, std::size_t number, const
     if (wrong == accelerations.end()) return;
     // Valid forces of these kinds may overflow, for example if two particles almost coincide.
     if (steepness_of(force) || lacks_softening(force)) return;
-    if (!std::all_of(view.positions.begin(), view.positions.end(), is_in_range)) return;
-    if (!std::all_of(view.velocities.begin(), view.velocities.end(), is_in_range)) return;
+    if (!std::ranges::all_of(view.positions, is_in_range)) return;
+    if (!std::ranges::all_of(view.velocities, is_in_range)) return;
     const auto k = static_cast<std::size_t>(wrong - accelerations.begin());
     const std::string name = force.name();
     const Vec3& x = view.positions[k];
@@ -69,26 +69,25 @@ MutualForces::MutualForces(std::vector<ParticlesForceEntry> entries) : entries_(
         if (!entry.force) {
             throw InputError(fmt::format("force between particles {}: found a null pointer, expected a force", k));
         }
-        std::sort(entry.particles.begin(), entry.particles.end());
-        std::sort(entry.emitters.begin(), entry.emitters.end());
+        std::ranges::sort(entry.particles);
+        std::ranges::sort(entry.emitters);
     }
 }
 
 bool MutualForces::acts_on(const ParticlesForceEntry& entry, const Particles& particles, std::size_t i) const {
     if (entry.particles.empty() && entry.emitters.empty()) return true;
-    if (std::binary_search(entry.particles.begin(), entry.particles.end(), particles.id[i])) return true;
-    return !entry.emitters.empty() &&
-           std::binary_search(entry.emitters.begin(), entry.emitters.end(), particles.origin[i].emitter);
+    if (std::ranges::binary_search(entry.particles, particles.id[i])) return true;
+    return !entry.emitters.empty() && std::ranges::binary_search(entry.emitters, particles.origin[i].emitter);
 }
 
 bool MutualForces::act_on(const Particles& particles, std::size_t i) const {
-    return std::any_of(entries_.begin(), entries_.end(),
-                       [&](const ParticlesForceEntry& entry) { return acts_on(entry, particles, i); });
+    return std::ranges::any_of(entries_,
+                               [&](const ParticlesForceEntry& entry) { return acts_on(entry, particles, i); });
 }
 
 bool MutualForces::depend_on_velocity() const {
-    return std::any_of(entries_.begin(), entries_.end(),
-                       [](const ParticlesForceEntry& entry) { return entry.force->depends_on_velocity(); });
+    return std::ranges::any_of(entries_,
+                               [](const ParticlesForceEntry& entry) { return entry.force->depends_on_velocity(); });
 }
 
 void MutualForces::assign(const Particles& particles, std::span<const std::uint32_t> members) {
@@ -128,7 +127,7 @@ ParticlesView MutualForces::view_of(const Seen& seen, double time, std::span<con
 
 void MutualForces::accelerations(double time, std::span<const Vec3> positions, std::span<const Vec3> velocities,
                                  std::span<Vec3> result) const {
-    std::fill(result.begin(), result.end(), Vec3{});
+    std::ranges::fill(result, Vec3{});
     for (std::size_t e = 0; e < seen_.size(); ++e) {
         const Seen& seen = seen_[e];
         Gathered gathered;

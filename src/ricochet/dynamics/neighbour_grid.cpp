@@ -38,8 +38,7 @@ public:
     /// Searches all rows whose first box is in the range from `begin` to `end`.
     void search_rows(std::size_t begin, std::size_t end) {
         const std::vector<Row>& rows = grid_.rows_;
-        auto row =
-            std::lower_bound(rows.begin(), rows.end(), begin, [](const Row& r, std::size_t k) { return r.begin < k; });
+        auto row = std::ranges::lower_bound(rows, begin, {}, &Row::begin);
         for (; row != rows.end() && row->begin < end; ++row) search_row(static_cast<std::size_t>(row - rows.begin()));
         found_.resize(count_);
     }

@@ -54,9 +54,7 @@ std::optional<AttributeDescription> looks_attribute(std::string_view name) {
     return std::nullopt;
 }
 
-bool is_own_array(std::string_view name) {
-    return std::find(kOwnArrays.begin(), kOwnArrays.end(), name) != kOwnArrays.end();
-}
+bool is_own_array(std::string_view name) { return std::ranges::find(kOwnArrays, name) != kOwnArrays.end(); }
 
 AttributeTable::AttributeTable(std::vector<AttributeDescription> columns)
     : columns_(std::move(columns)), values_(columns_.size()) {
@@ -195,7 +193,7 @@ std::vector<std::uint32_t> Particles::order_by_id() const {
     std::vector<std::uint32_t> order(size());
     std::iota(order.begin(), order.end(), std::uint32_t{0});
     if (std::is_sorted(id.begin(), id.end()) || put_in_order_by_table(id, order)) return order;
-    std::sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) { return id[a] < id[b]; });
+    std::ranges::sort(order, [this](std::uint32_t a, std::uint32_t b) { return id[a] < id[b]; });
     return order;
 }
 

@@ -38,15 +38,15 @@ public:
     explicit Indices(std::span<const std::uint64_t> ids) : ids_(ids), order_(ids.size()) {
         std::iota(order_.begin(), order_.end(), std::uint32_t{0});
         if (!std::is_sorted(ids.begin(), ids.end())) {
-            std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) { return ids[a] < ids[b]; });
+            std::ranges::sort(order_, [&](std::uint32_t a, std::uint32_t b) { return ids[a] < ids[b]; });
         }
         const auto twice = std::adjacent_find(order_.begin(), order_.end(),
                                               [&](std::uint32_t a, std::uint32_t b) { return ids[a] == ids[b]; });
         if (twice != order_.end()) throw InputError("particles of springs: found an id twice, expected each once");
     }
     [[nodiscard]] std::optional<std::uint32_t> of(std::uint64_t id) const {
-        const auto found = std::lower_bound(order_.begin(), order_.end(), id,
-                                            [&](std::uint32_t i, std::uint64_t wanted) { return ids_[i] < wanted; });
+        const auto found = std::ranges::lower_bound(
+            order_, id, [&](std::uint32_t i, std::uint64_t wanted) { return ids_[i] < wanted; });
         if (found == order_.end() || ids_[*found] != id) return std::nullopt;
         return *found;
     }
@@ -123,9 +123,7 @@ void SpringNetwork::require_entries(std::span<const Vec3> values) const {
 }
 
 void SpringNetwork::require_states() const {
-    const auto count_of = [&](State state) {
-        return static_cast<std::size_t>(std::count(states_.begin(), states_.end(), state));
-    };
+    const auto count_of = [&](State state) { return static_cast<std::size_t>(std::ranges::count(states_, state)); };
     const std::size_t broken = count_of(State::broken);
     const std::size_t lost = count_of(State::lost);
     if (broken != broken_ || lost != lost_ || broken + lost + count_of(State::intact) != states_.size()) {

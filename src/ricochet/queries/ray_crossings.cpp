@@ -79,7 +79,7 @@ std::vector<Passed> features_passed(const std::vector<Candidate>& candidates) {
             if (met.intersection.features.has(feature)) passed.push_back({FeatureKey(met.corners, feature), k});
         }
     }
-    std::sort(passed.begin(), passed.end(), [](const Passed& x, const Passed& y) {
+    std::ranges::sort(passed, [](const Passed& x, const Passed& y) {
         const int order = FeatureKey::order(x.key, y.key);
         return order != 0 ? order < 0 : x.candidate < y.candidate;
     });
@@ -190,14 +190,13 @@ void all_crossings(const MeshIndex& mesh, const RayQuery& query, std::vector<Ray
         if (const auto met = meet(mesh, query, triangle)) candidates.push_back({triangle, *met});
         return 1.0;
     });
-    std::sort(candidates.begin(), candidates.end(),
-              [](const Candidate& x, const Candidate& y) { return x.triangle < y.triangle; });
+    std::ranges::sort(candidates, [](const Candidate& x, const Candidate& y) { return x.triangle < y.triangle; });
     // The hierarchy may propose a triangle twice.
     candidates.erase(std::unique(candidates.begin(), candidates.end(),
                                  [](const Candidate& x, const Candidate& y) { return x.triangle == y.triangle; }),
                      candidates.end());
-    std::sort(candidates.begin(), candidates.end(),
-              [&](const Candidate& x, const Candidate& y) { return comes_before(query.ray, x, y); });
+    std::ranges::sort(candidates,
+                      [&](const Candidate& x, const Candidate& y) { return comes_before(query.ray, x, y); });
     append_crossings(query, mesh, candidates, crossings);
 }
 

@@ -32,9 +32,7 @@ struct Paths {
         if (radii.empty()) return 0.0;
         return radii.size() == 1 ? radii[0] : radii[i];
     }
-    [[nodiscard]] double largest_radius() const {
-        return radii.empty() ? 0.0 : *std::max_element(radii.begin(), radii.end());
-    }
+    [[nodiscard]] double largest_radius() const { return radii.empty() ? 0.0 : *std::ranges::max_element(radii); }
     void require() const {
         require_same_length(to.size(), from.size(), "to");
         if (radii.size() > 1) require_same_length(radii.size(), from.size(), "radii");

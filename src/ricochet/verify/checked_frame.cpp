@@ -22,8 +22,7 @@ void require_surface(bool condition, const char* what) {
 
 void require_good(const TriangleMesh& mesh) {
     require_corners(mesh);
-    require_surface(std::all_of(mesh.vertices.begin(), mesh.vertices.end(), is_finite),
-                    "verified mesh: found a vertex that is not finite");
+    require_surface(std::ranges::all_of(mesh.vertices, is_finite), "verified mesh: found a vertex that is not finite");
 }
 
 Side side_of(int sign) { return sign > 0 ? Side::outside : (sign < 0 ? Side::inside : Side::on_surface); }

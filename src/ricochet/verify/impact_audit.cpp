@@ -71,8 +71,7 @@ private:
     }
     template <class Holds>
     [[nodiscard]] bool holds_for_all(const Holds& holds) const {
-        return std::all_of(meeting_.contacts.begin(), meeting_.contacts.end(),
-                           [&](const MetContact& contact) { return holds(law(contact)); });
+        return std::ranges::all_of(meeting_.contacts, [&](const MetContact& contact) { return holds(law(contact)); });
     }
 
     [[nodiscard]] bool is_apart(const MetContact& contact) const {

@@ -37,7 +37,7 @@ std::size_t count_open_edges(const TriangleMesh& mesh) {
             if (from != to) sides.emplace_back(std::min(from, to), std::max(from, to));
         }
     }
-    std::sort(sides.begin(), sides.end());
+    std::ranges::sort(sides);
     std::size_t open = 0;
     for (std::size_t i = 0; i < sides.size();) {
         std::size_t end = i;
@@ -114,9 +114,8 @@ void ParityOracle::choose_resolution() {
 void ParityOracle::fill_columns() {
     std::vector<std::uint32_t> order(faces_.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
-    std::stable_sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) {
-        return faces_[a].box.upper.z > faces_[b].box.upper.z;
-    });
+    std::ranges::stable_sort(
+        order, [this](std::uint32_t a, std::uint32_t b) { return faces_[a].box.upper.z > faces_[b].box.upper.z; });
     const auto for_columns_of = [this](const Face& face, const auto& body) {
         const CellRange x = cells(face.box.lower.x, face.box.upper.x, box_.lower.x, per_x_);
         const CellRange y = cells(face.box.lower.y, face.box.upper.y, box_.lower.y, per_y_);

@@ -55,8 +55,7 @@ bool has_wrong_rebound(const RecordedImpact& impact) {
     // A listed surface is a support only if the particle moves along it. The contact interval may have touched both
     // sides of a thin body, or may have left the surface.
     const auto is_support = [&](const RecordedImpact::Surface& surface) {
-        const bool is_listed = std::find(impact.supported_by.begin(), impact.supported_by.end(), surface.surface) !=
-                               impact.supported_by.end();
+        const bool is_listed = std::ranges::find(impact.supported_by, surface.surface) != impact.supported_by.end();
         return surface.is_support || (is_listed && moves_along(surface));
     };
     const auto is_hit = [&](const RecordedImpact::Surface& surface) {

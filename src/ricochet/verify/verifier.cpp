@@ -64,8 +64,8 @@ Verifier::Impl::Impl(const std::vector<VerifiedSurface>& surfaces, const Verifie
             continue;
         }
         const std::optional<std::size_t> frame = i < motion.frame_of.size() ? motion.frame_of[i] : std::nullopt;
-        auto of_frame = std::find_if(frames.begin(), frames.end(),
-                                     [&](const CheckedFrame& checked) { return checked.frame() == frame; });
+        auto of_frame =
+            std::ranges::find_if(frames, [&](const CheckedFrame& checked) { return checked.frame() == frame; });
         if (of_frame == frames.end()) of_frame = frames.insert(frames.end(), CheckedFrame(motion.frames, frame));
         of_frame->add(static_cast<std::uint32_t>(i), surfaces[i]);
     }
@@ -90,10 +90,9 @@ std::vector<Side> Verifier::Impl::sides_of(const Vec3& p, double time) const {
 }
 
 bool Verifier::Impl::is_on_surface(const Vec3& p, double time) const {
-    return std::any_of(frames.begin(), frames.end(),
-                       [&](const CheckedFrame& frame) { return frame.is_on_surface(p, time); }) ||
-           std::any_of(deformations.begin(), deformations.end(),
-                       [&](const CheckedDeformation& deformation) { return deformation.is_on_surface(p, time); });
+    return std::ranges::any_of(frames, [&](const CheckedFrame& frame) { return frame.is_on_surface(p, time); }) ||
+           std::ranges::any_of(
+               deformations, [&](const CheckedDeformation& deformation) { return deformation.is_on_surface(p, time); });
 }
 
 /// Checks that each segment starts where the last one ended. If colliders move, it must also start at the time when the
@@ -133,7 +132,7 @@ void Verifier::Impl::check_segment(const Judged& judged, const Segment& segment,
     for (const CheckedDeformation& deformation : deformations) {
         if (passes) deformation.find_crossings(segment, segment.begin < particle.checked_until, crossings);
     }
-    std::sort(crossings.begin(), crossings.end(), [](const auto& a, const auto& b) {
+    std::ranges::sort(crossings, [](const auto& a, const auto& b) {
         return a.collider != b.collider ? a.collider < b.collider : a.triangle < b.triangle;
     });
     for (const auto& [position, collider, triangle] : crossings) {
@@ -228,9 +227,8 @@ VerifiedParticle Verifier::watch(const Vec3& position, double radius, double tim
     particle.checked_until = time;
     if (!is_finite(position)) return particle;
     particle.sides = impl_->sides_of(position, time);
-    particle.is_on_surface =
-        std::find(particle.sides.begin(), particle.sides.end(), Side::on_surface) != particle.sides.end() ||
-        impl_->is_on_surface(position, time);
+    particle.is_on_surface = std::ranges::find(particle.sides, Side::on_surface) != particle.sides.end() ||
+                             impl_->is_on_surface(position, time);
     const auto overlaps = [&](std::uint32_t, std::optional<std::uint32_t>) { particle.has_been_free = false; };
     for (const auto& frame : impl_->frames) {
         frame.visit_overlapped(position, time, radius, max_abs(position), 0.0, overlaps);

@@ -24,7 +24,7 @@ bool is_oriented(const FaceList& faces, const EdgeTable& edges, const std::vecto
     edges.for_each_edge([&](std::span<const std::uint32_t> uses) {
         std::int64_t excess = 0;
         for (const std::uint32_t use : uses) {
-            if (!left_out.empty() && std::binary_search(left_out.begin(), left_out.end(), face_of[use])) continue;
+            if (!left_out.empty() && std::ranges::binary_search(left_out, face_of[use])) continue;
             excess += faces.corners[use] < faces.corners[faces.next_corner[use]] ? 1 : -1;
         }
         oriented = oriented && excess == 0;
@@ -45,9 +45,8 @@ ClosedSurface choose_by_shell(const FaceList& faces, const EdgeTable& edges, std
     std::vector<ShellParity> parity(faces.face_count());
     edges.for_each_edge([&](std::span<const std::uint32_t> uses) {
         const auto once =
-            std::count_if(uses.begin(), uses.end(), [&](std::uint32_t use) { return is_repeated[face_of[use]] == 0; });
-        const auto sides =
-            std::count_if(uses.begin(), uses.end(), [&](std::uint32_t use) { return is_copy[face_of[use]] == 0; });
+            std::ranges::count_if(uses, [&](std::uint32_t use) { return is_repeated[face_of[use]] == 0; });
+        const auto sides = std::ranges::count_if(uses, [&](std::uint32_t use) { return is_copy[face_of[use]] == 0; });
         ShellParity& shell = parity[shells.find(face_of[uses[0]])];
         shell.is_odd_once = shell.is_odd_once || once % 2 != 0;
         shell.is_odd = shell.is_odd || sides % 2 != 0;

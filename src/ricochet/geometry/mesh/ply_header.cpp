@@ -22,8 +22,7 @@ std::optional<PlyType> type_of(std::string_view word) {
         Entry{"int32", PlyType::kInt32},    Entry{"uint", PlyType::kUint32},     Entry{"uint32", PlyType::kUint32},
         Entry{"float", PlyType::kFloat32},  Entry{"float32", PlyType::kFloat32}, Entry{"double", PlyType::kFloat64},
         Entry{"float64", PlyType::kFloat64}};
-    const auto* const found =
-        std::find_if(kTypes.begin(), kTypes.end(), [&](const Entry& e) { return e.first == word; });
+    const auto* const found = std::ranges::find_if(kTypes, [&](const Entry& e) { return e.first == word; });
     return found == kTypes.end() ? std::nullopt : std::optional(found->second);
 }
 
@@ -198,15 +197,13 @@ std::size_t PlyElement::smallest_size() const {
 }
 
 std::optional<std::size_t> PlyElement::find(std::string_view property) const {
-    const auto found =
-        std::find_if(properties.begin(), properties.end(), [&](const PlyProperty& p) { return p.name == property; });
+    const auto found = std::ranges::find_if(properties, [&](const PlyProperty& p) { return p.name == property; });
     if (found == properties.end()) return std::nullopt;
     return static_cast<std::size_t>(found - properties.begin());
 }
 
 const PlyElement* PlyHeader::find(std::string_view element) const {
-    const auto found =
-        std::find_if(elements.begin(), elements.end(), [&](const PlyElement& e) { return e.name == element; });
+    const auto found = std::ranges::find_if(elements, [&](const PlyElement& e) { return e.name == element; });
     return found == elements.end() ? nullptr : &*found;
 }
 

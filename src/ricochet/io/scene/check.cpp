@@ -132,9 +132,8 @@ Problem integers_problem(const JsonNode& node, const KeySpec& key) {
 }
 
 bool has_control_character(const std::string& text) {
-    return std::any_of(text.begin(), text.end(), [](char c) {
-        return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7f;
-    });
+    return std::ranges::any_of(
+        text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7f; });
 }
 
 Problem text_problem(const JsonNode& node, const KeySpec& key) {
@@ -215,7 +214,7 @@ std::vector<std::string_view> names_of(const std::vector<const KeySpec*>& keys) 
 }
 
 bool is_in(const std::vector<std::string_view>& names, std::string_view name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
+    return std::ranges::find(names, name) != names.end();
 }
 
 class Checker {
@@ -352,7 +351,7 @@ private:
                                                         const JsonNode& node) {
         std::vector<std::string_view> nearest = nearest_names(word, known);
         const auto is_there = [&](std::string_view name) { return node.find(name) != nullptr; };
-        if (!std::all_of(nearest.begin(), nearest.end(), is_there)) {
+        if (!std::ranges::all_of(nearest, is_there)) {
             nearest.erase(std::remove_if(nearest.begin(), nearest.end(), is_there), nearest.end());
         }
         return nearest;
@@ -439,7 +438,7 @@ private:
         std::vector<std::string_view> owners;
         for (const Variant& variant : spec.variants) {
             const auto has_it = [&](const KeySpec& key) { return key.name == name; };
-            if (std::any_of(variant.keys.begin(), variant.keys.end(), has_it)) owners.push_back(variant.name);
+            if (std::ranges::any_of(variant.keys, has_it)) owners.push_back(variant.name);
         }
         return quoted_list(owners);
     }
@@ -450,7 +449,7 @@ private:
         const auto is_there = [&](std::string_view name) {
             return node.find(name) != nullptr || excused.contains(name);
         };
-        const auto there = std::count_if(variant.exactly_one_of.begin(), variant.exactly_one_of.end(), is_there);
+        const auto there = std::ranges::count_if(variant.exactly_one_of, is_there);
         if (there == 1) return;
         diagnostics_.error(node.location, path,
                            fmt::format("found {} of the keys {}, expected exactly one of them",

@@ -80,9 +80,8 @@ std::shared_ptr<const TriangleMesh> SceneContext::placed_mesh(const ObjectView& 
                                                               const TriangleMesh& mesh,
                                                               const Placement& placement) const {
     auto world = std::make_shared<const TriangleMesh>(transformed(mesh, placement));
-    const bool is_in_range = std::all_of(world->vertices.begin(), world->vertices.end(), [](const Vec3& v) {
-        return is_finite(v) && max_abs(v) <= kLargestCoordinate;
-    });
+    const bool is_in_range = std::ranges::all_of(
+        world->vertices, [](const Vec3& v) { return is_finite(v) && max_abs(v) <= kLargestCoordinate; });
     if (is_in_range) return world;
     error(view, key, fmt::format("a placed vertex is not finite or beyond {} m", kLargestCoordinate));
     return nullptr;

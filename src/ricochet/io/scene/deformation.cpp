@@ -172,7 +172,7 @@ private:
                 files.push_back({*number, folder / it->path().filename()});
             }
         }
-        std::sort(files.begin(), files.end(), [](const NumberedFile& a, const NumberedFile& b) {
+        std::ranges::sort(files, [](const NumberedFile& a, const NumberedFile& b) {
             return a.number != b.number ? a.number < b.number : a.path < b.path;
         });
         require_series(files, pattern);
@@ -338,9 +338,8 @@ bool stretch(SceneContext& context, const ObjectView& view, const SimulationOpti
              const FrameDescription& own, ColliderDescription& collider) {
     const auto parent = frames.find(own.parent);
     const bool is_in_scaled = parent && frames.is_scaled(*parent);
-    const bool is_scaled = std::any_of(own.motions.begin(), own.motions.end(), [](const FrameMotion& motion) {
-        return std::holds_alternative<KeyedScale>(motion);
-    });
+    const bool is_scaled = std::ranges::any_of(
+        own.motions, [](const FrameMotion& motion) { return std::holds_alternative<KeyedScale>(motion); });
     if ((!is_scaled && !is_in_scaled) || context.failed()) return is_scaled || is_in_scaled;
     const char* const key = is_scaled ? "motion" : "frame";
     const std::shared_ptr<const TriangleMesh> mesh = mesh_within_frame(collider.shape);

@@ -280,7 +280,7 @@ void warn_of_unknown_ids(const SceneContext& context, const ObjectView& view, co
                          std::span<const std::uint64_t> ids) {
     if (!setup.emitters.empty()) return;  // emitters may create these ids later
     const auto is_unknown = [&](std::uint64_t id) { return id >= setup.particles.size(); };
-    const auto unknown = std::find_if(ids.begin(), ids.end(), is_unknown);
+    const auto unknown = std::ranges::find_if(ids, is_unknown);
     if (unknown == ids.end()) return;
     context.warn(
         view, "particles",
@@ -300,8 +300,7 @@ bool has_only_points(const SimulationSetup& setup) {
     const auto emits_points = [](const EmitterDescription& emitter) {
         return emitter.radius.mean == 0.0 && emitter.radius.spread == 0.0;
     };
-    return std::all_of(setup.particles.begin(), setup.particles.end(), is_point) &&
-           std::all_of(setup.emitters.begin(), setup.emitters.end(), emits_points);
+    return std::ranges::all_of(setup.particles, is_point) && std::ranges::all_of(setup.emitters, emits_points);
 }
 
 void warn_of_forces_without_radius(const SceneContext& context, const SimulationSetup& setup) {

@@ -57,8 +57,7 @@ ClosedSurface choose_by_shell(const FaceList& faces, const EdgeTable& edges, std
         const ShellParity& shell = parity[shells.find(f)];
         return is_copy[f] == 0 && shell.is_odd_once && !shell.is_odd;
     };
-    result.left_out.erase(std::remove_if(result.left_out.begin(), result.left_out.end(), counts),
-                          result.left_out.end());
+    std::erase_if(result.left_out, counts);
     result.oriented = result.closed && is_oriented(faces, edges, result.left_out);
     return result;
 }

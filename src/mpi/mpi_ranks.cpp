@@ -1,28 +1,23 @@
-#include "mpi/mpi_ranks.h"
-
+// The loadable library that contains all calls to MPI.
 #include <mpi.h>
 #include <sched.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <span>
 #include <thread>
 #include <vector>
 
 #include "mpi/common_memory.h"
-#include "mpi/launch.h"
+#include "mpi/mpi_library.h"
 
 namespace ricochet::mpi {
 namespace {
 
 /// Largest message, in bytes. Longer messages are split, because MPI stores counts as int.
 constexpr std::size_t kPiece = std::size_t{1} << 30U;
-
-bool joined = false;
-bool agreed = false;  // true after agree_to_end()
 
 /// Time for which a rank polls without sleeping. It is about the duration of a message if all ranks are ready.
 constexpr std::chrono::microseconds kSpin{100};
@@ -177,53 +172,50 @@ private:
     int size_;
 };
 
+class LoadedMpi final : public MpiLibrary {
+public:
+    [[nodiscard]] std::shared_ptr<Ranks> join() override {
+        // MPI does not need to yield the processor, because wait_for() sleeps.
+        (void)::setenv("OMPI_MCA_mpi_yield_when_idle", "0", 0);
+        int provided = 0;
+        MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
+        int rank = 0;
+        int size = 1;
+        MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+        MPI_Comm_size(MPI_COMM_WORLD, &size);
+        return std::make_shared<MpiRanks>(rank, size);
+    }
+
+    // If mpirun binds ranks to separate processors, they share no processor. Unbound ranks share all processors of the
+    // machine.
+    [[nodiscard]] std::size_t ranks_on_these_processors() override {
+        MPI_Comm here = MPI_COMM_NULL;
+        int count = 1;
+        MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
+        MPI_Comm_size(here, &count);
+        cpu_set_t own;
+        CPU_ZERO(&own);
+        (void)::sched_getaffinity(0, sizeof own, &own);
+        std::vector<cpu_set_t> all(static_cast<std::size_t>(count));
+        MPI_Allgather(&own, sizeof own, MPI_BYTE, all.data(), sizeof own, MPI_BYTE, here);
+        MPI_Comm_free(&here);
+        const auto sharing = std::count_if(all.begin(), all.end(), [&own](const cpu_set_t& other) {
+            cpu_set_t common;
+            CPU_AND(&common, &own, &other);
+            return CPU_COUNT(&common) > 0;
+        });
+        return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, sharing));
+    }
+
+    void finalize() override { MPI_Finalize(); }
+    void abort(int exit_code) override { MPI_Abort(MPI_COMM_WORLD, exit_code); }
+};
+
 }  // namespace
-
-std::shared_ptr<Ranks> join() {
-    if (!was_launched()) return nullptr;
-    // MPI does not need to yield the processor, because wait_for() sleeps.
-    (void)::setenv("OMPI_MCA_mpi_yield_when_idle", "0", 0);
-    int provided = 0;
-    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
-    joined = true;
-    int rank = 0;
-    int size = 1;
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &size);
-    return std::make_shared<MpiRanks>(rank, size);
-}
-
-bool has_joined() { return joined; }
-
-// If mpirun binds ranks to separate processors, they share no processor. Unbound ranks share all processors of the
-// machine.
-std::size_t ranks_on_these_processors() {
-    if (!joined) return 1;
-    MPI_Comm here = MPI_COMM_NULL;
-    int count = 1;
-    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
-    MPI_Comm_size(here, &count);
-    cpu_set_t own;
-    CPU_ZERO(&own);
-    (void)::sched_getaffinity(0, sizeof own, &own);
-    std::vector<cpu_set_t> all(static_cast<std::size_t>(count));
-    MPI_Allgather(&own, sizeof own, MPI_BYTE, all.data(), sizeof own, MPI_BYTE, here);
-    MPI_Comm_free(&here);
-    const auto sharing = std::count_if(all.begin(), all.end(), [&own](const cpu_set_t& other) {
-        cpu_set_t common;
-        CPU_AND(&common, &own, &other);
-        return CPU_COUNT(&common) > 0;
-    });
-    return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, sharing));
-}
-
-void agree_to_end() { agreed = true; }
-
-void end_process(int exit_code) {
-    if (!joined) return;
-    (void)std::fflush(nullptr);
-    if (!agreed) MPI_Abort(MPI_COMM_WORLD, exit_code);
-    MPI_Finalize();
-}
-
 }  // namespace ricochet::mpi
+
+// The type is MpiLibraryFunction, and the name kMpiLibraryFunction.
+extern "C" ricochet::mpi::MpiLibrary* ricochet_mpi_library() {
+    static ricochet::mpi::LoadedMpi mpi;
+    return &mpi;
+}

@@ -255,6 +255,18 @@ wait "$run" || code=$?
 grep -q '"interrupted": true' "$folder/signal/summary.json" || fail "the summary does not say that it was interrupted"
 [[ -f "$folder/signal/checkpoint.bin" ]] || fail "a run that was ended by a signal has no checkpoint"
 
+# A hang-up ends them too, although libraries of MPI handle SIGHUP.
+ranks 3 "$scene" --output "$folder/hang-up" --set simulation.duration=1000 >"$folder/hang-up.out" 2>&1 &
+run=$!
+wait_for_frames hang-up 3
+kill -HUP "$(cat "$folder/pid.1")" || fail "the run ended early: $(cat "$folder/hang-up.out")"
+frames="$(compgen -G "$folder/hang-up/particles_*.vtp" | wc -l)"
+wait_for_frames hang-up "$((frames + 100))"
+kill -KILL "$run" 2>/dev/null && fail "a hang-up does not end the run"
+code=0
+wait "$run" || code=$?
+((code == 129)) || fail "a hang-up of one process: exit code $code, expected 129: $(cat "$folder/hang-up.out")"
+
 # Wrong input is reported once, even if another rank finds it.
 refuse() {
     code=0
@@ -298,4 +310,12 @@ code=0
     'exec "$0" run "$1" --output "$2" --set simulation.duration=0.$((1 + OMPI_COMM_WORLD_RANK)) --quiet' \
     "$ricochet" "$scene" "$folder/different" >"$folder/different.out" 2>&1 || code=$?
 expect_end different 2 'the 2 processes have found different scenes'
+
+# A tool without the library for MPI beside it runs alone, and refuses to share a run.
+cp "$ricochet" "$folder/ricochet"
+"$folder/ricochet" run "$scene" --output "$folder/without" --set simulation.duration=0.1 --quiet || fail "no run without MPI"
+code=0
+(cd "$folder" && OMPI_COMM_WORLD_RANK=0 OMPI_COMM_WORLD_SIZE=2 ./ricochet run "$scene" --output without) \
+    >"$folder/without.out" 2>&1 || code=$?
+expect_end without 1 'ranks: the library for MPI cannot be loaded: ricochet_mpi.so: '
 echo "passed"

@@ -29,6 +29,14 @@ void print_impulse_share(const ImpulseSizes& sizes) {
         100.0 * sizes.share_of_impacts());
 }
 
+void print_pair_impacts(const SimulationStatistics& statistics) {
+    print("  {} {} between spheres, besides those that are solved together\n", statistics.pair_impacts,
+          statistics.pair_impacts == 1 ? "impact" : "impacts");
+    if (!(statistics.joined_impact_loss > 0.0)) return;
+    print("  impacts that are solved together lost {:.3g} J beyond their restitution, {:.2g} % of their energy\n",
+          statistics.joined_impact_loss, 100.0 * statistics.joined_impact_loss / statistics.joined_impact_energy);
+}
+
 /// Prints one line with the most frequently hit groups of a collider.
 void print_groups(const ColliderSummary& collider) {
     constexpr std::size_t kMostGroups = 8;
@@ -131,10 +139,7 @@ void print_report(const RunSummary& summary, const std::string& output) {
           statistics.emitted, summary.particles_alive, statistics.particle_steps,
           rate_text(statistics.particle_steps, summary.wall_seconds), statistics.contacts,
           statistics.bounces_per_step_max);
-    if (summary.spheres_meet) {
-        print("  {} {} between spheres, besides those in islands that are solved together\n", statistics.pair_impacts,
-              statistics.pair_impacts == 1 ? "impact" : "impacts");
-    }
+    if (summary.spheres_meet) print_pair_impacts(statistics);
     for (const ColliderSummary& collider : summary.colliders) print_groups(collider);
     for (const CounterTotals& counter : summary.counters) print_counter(counter);
     print_notes(statistics);

@@ -43,7 +43,7 @@ public:
         course_.scratch.record_segments = true;
         std::vector<double> reach;
         for (ContactIslandMember& member : members) reach.push_back(member.reach = island_.first_reach(member));
-        const SolverReport report = island_.plan(members, pairs(reach), duration, memory_, course_.scratch);
+        const SolverReport report = island_.plan(members, pairs(reach), duration, 1.0, memory_, course_.scratch);
         unsolved += report.is_converged ? 0 : 1;
         sweeps += report.sweeps;
         memory_.replace(island_.entries());

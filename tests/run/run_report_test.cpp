@@ -74,13 +74,14 @@ TEST(Summary, StatisticsKeepTheirOrder) {
         is_statistic = key != "kinetic_energy" && (is_statistic || key == "particles_emitted");
         if (is_statistic) keys += key + " ";
     }
-    EXPECT_EQ(keys,
-              "particles_emitted expired absorbed out_of_bounds shattered children births_refused_by_depth "
-              "births_refused_by_population births_refused_by_overlap frozen particle_steps contacts "
-              "bounces_per_step_max resting asleep unsimulated_time budget_exhausted coarse_steps started_inside "
-              "started_in_overlap stayed squeezed body_parts lost_impulses springs_broken springs_lost "
-              "unsolved_steps trials penetrations penetration_mean penetration_deepest pair_impacts overlap_largest "
-              "born_in_overlap overlap_verified pair_violations leaks energy_violations ");
+    EXPECT_EQ(
+        keys,
+        "particles_emitted expired absorbed out_of_bounds shattered children births_refused_by_depth "
+        "births_refused_by_population births_refused_by_overlap frozen particle_steps contacts "
+        "bounces_per_step_max resting asleep unsimulated_time budget_exhausted coarse_steps started_inside "
+        "started_in_overlap stayed squeezed body_parts lost_impulses springs_broken springs_lost "
+        "unsolved_steps trials penetrations penetration_mean penetration_deepest pair_impacts joined_impact_energy "
+        "joined_impact_loss overlap_largest born_in_overlap overlap_verified pair_violations leaks energy_violations ");
 }
 
 TEST(Summary, NumbersReadBackToTheSameBits) {

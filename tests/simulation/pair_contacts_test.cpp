@@ -380,7 +380,8 @@ TEST(PairContacts, InitiallyOverlappingSpheresSeparateAndGetNoDeeper) {
 }
 
 TEST(PairContacts, SphereThatSpendsItsBudgetIsCountedAndStays) {
-    SimulationSetup setup = pair_setup(0.5, 0.5, {.restitution = 0.5, .impact_budget = 3});
+    SimulationSetup setup =
+        pair_setup(0.5, 0.5, {.restitution = 0.5, .method = PairMethod::events, .impact_budget = 3});
     ColliderDescription floor;
     floor.shape = PlaneShape{{0, 0, 0}, {0, 0, 1}};
     setup.colliders.push_back(floor);

@@ -11,7 +11,6 @@
 /// 14 (1976), for the step from compliant to rigid contacts.
 #pragma once
 
-#include <array>
 #include <cstddef>
 
 #include "ricochet/core/tolerances.h"

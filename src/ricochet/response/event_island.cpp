@@ -25,47 +25,84 @@ PairBody body_of(const IslandMember& member) {
 
 }  // namespace
 
-bool EventIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch, const ImpactLimit& limit) {
+void EventIsland::begin(std::vector<IslandMember>& members, MoveScratch& scratch) {
     members_ = &members;
     scratch_ = &scratch;
     impacts_.clear();
     meetings_.clear();
     most_of_one_ = 0;
+    last_impact_ = kStartOfStep;
     if (predictions_.size() < members.size()) predictions_.resize(members.size());
     boxes_.assign(members.size(), {});
     partners_.assign(members.size(), 0);
+    changed_at_.assign(members.size(), kStartOfStep);
+    repeated_.assign(members.size(), {});
+    most_repeated_ = 0;
     times_.reset(members.size());
     resumed_.resize(std::max(resumed_.size(), members.size()));
-    begin_.clear();
-    for (const IslandMember& member : members) begin_.push_back(member.moving.state.position);
-    scratch.record_flown = true;
     for (std::size_t m = 0; m < members.size(); ++m) predict(m);
     neighbours_.begin(boxes_);
-    if (!limit.allows_pressing && presses()) {
-        scratch.record_flown = false;
-        return false;
+}
+
+std::optional<double> EventIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch,
+                                       const ImpactLimit& limit) {
+    scratch.record_flown = true;
+    const std::optional<double> handover = solve(members, scratch, limit);
+    scratch.record_flown = false;
+    return handover;
+}
+
+std::optional<double> EventIsland::solve(std::vector<IslandMember>& members, MoveScratch& scratch,
+                                         const ImpactLimit& limit) {
+    budget_ = limit.budget;
+    if (!limit.allows_sinking) start_ = members;
+    begin(members, scratch);
+    if (!limit.allows_pressing && presses()) return kStartOfStep;
+    resolve_until(std::numeric_limits<double>::infinity(), limit);
+    const std::optional<double> handover = time_of_handover(limit);
+    if (!handover) {
+        for (std::size_t m = 0; m < members.size(); ++m) commit(m);
+        return std::nullopt;
     }
+    if (*handover != last_impact_ || *handover == kStartOfStep) {
+        members = start_;
+        begin(members, scratch);
+        resolve_until(*handover, {});
+    }
+    if (*handover != kStartOfStep) {
+        for (std::size_t m = 0; m < members.size(); ++m) {
+            if (!is_still(m)) go_to(m, std::min(*handover, members[m].end));
+        }
+    }
+    return handover;
+}
+
+/// Resolves the impacts up to a time, in s, in order.
+void EventIsland::resolve_until(double last, const ImpactLimit& limit) {
     find_all();
-    while (true) {
+    while (!exceeds(limit)) {
         const double time = times_.earliest();
-        if (!std::isfinite(time) || exceeds(limit)) break;
+        if (!std::isfinite(time) || time > last) return;
+        last_impact_ = time;
         std::vector<PairContact> contacts = contacts_at(time);
         keep_fastest(contacts, time);
         resolve(contacts, time);
     }
-    scratch.record_flown = false;
-    if (exceeds(limit) || (!limit.allows_sinking && sinks())) return false;
-    for (std::size_t m = 0; m < members.size(); ++m) commit(m);
-    return true;
 }
 
-bool EventIsland::exceeds(const ImpactLimit& limit) const {
-    return impacts_.size() > limit.in_all || most_of_one_ > limit.of_each;
+/// Returns the time at which contacts begin to last, or nothing if none lasts. A kick at the start of the step cannot
+/// be divided, so an island with one is handed over at the start.
+std::optional<double> EventIsland::time_of_handover(const ImpactLimit& limit) const {
+    std::optional<double> time;
+    if (exceeds(limit)) time = last_impact_;
+    if (!time && !limit.allows_sinking) time = time_of_sinking();
+    const bool is_kicked = kicks_first(response_.rules().settings.integrator.kind);
+    return time && (is_kicked || !limit.keeps_impacts) ? kStartOfStep : time;
 }
 
-/// Returns true if two members press on each other for the whole step, see has_sunk(). is: further condition.
-template <class Is>
-bool EventIsland::any_sinks(const Is& is) const {
+/// Calls visit(m, other) for the pairs of members that press on each other until the end of the step, see has_sunk().
+template <class Visit>
+void EventIsland::visit_sunk_pairs(const Visit& visit) const {
     const auto is_there = [](const IslandMember& member) { return !member.is_gone() && !member.is_cut_off; };
     for (std::size_t m = 0; m < members_->size(); ++m) {
         const IslandMember& member = (*members_)[m];
@@ -76,32 +113,38 @@ bool EventIsland::any_sinks(const Is& is) const {
                 continue;
             const Vec3 apart = state_of(other, member.end).position - state_of(m, member.end).position;
             const double smaller = std::min(member.radius(), neighbour.radius());
-            const Vec3 before = begin_[other] - begin_[m];
-            if (has_sunk(member.radius() + neighbour.radius(), smaller, before, apart) && is(m, other)) return true;
+            const Vec3 before = start_[other].moving.state.position - start_[m].moving.state.position;
+            if (has_sunk(member.radius() + neighbour.radius(), smaller, before, apart)) visit(m, other);
         }
     }
-    return false;
 }
 
-bool EventIsland::sinks() const {
-    return any_sinks([](std::size_t, std::size_t) { return true; });
+/// Returns the earliest time from which two members press on each other: the last impact of one of them.
+std::optional<double> EventIsland::time_of_sinking() const {
+    std::optional<double> earliest;
+    visit_sunk_pairs([&](std::size_t m, std::size_t other) {
+        const double time = std::max(changed_at_[m], changed_at_[other]);
+        earliest = std::min(earliest.value_or(time), time);
+    });
+    return earliest;
 }
 
 /// Returns true if two members press on each other before any impact. Such a pair would make impacts without rebound
 /// and never complete the step. A member that bounces off a wall is excluded, because it rebounds.
 bool EventIsland::presses() const {
     const double resting = response_.rules().settings.resting_speed;
-    return any_sinks([&](std::size_t m, std::size_t other) {
+    bool is_found = false;
+    visit_sunk_pairs([&](std::size_t m, std::size_t other) {
         const IslandMember& a = (*members_)[m];
         const IslandMember& b = (*members_)[other];
-        const bool is_thrown = predictions_[m].outcome.bounces > 0 || predictions_[other].outcome.bounces > 0;
-        if (is_thrown) return false;
-        const Vec3 apart = begin_[other] - begin_[m];
+        if (predictions_[m].outcome.bounces > 0 || predictions_[other].outcome.bounces > 0) return;
+        const Vec3 apart = b.moving.state.position - a.moving.state.position;
         const double distance = length(apart);
         const double touching = a.radius() + b.radius() + kPressedOverlap * std::min(a.radius(), b.radius());
         const double approach = -dot(b.moving.state.velocity - a.moving.state.velocity, apart);
-        return distance <= touching && approach <= resting * distance;
+        is_found = is_found || (distance <= touching && approach <= resting * distance);
     });
+    return is_found;
 }
 
 /// Predicts the path of a member to the end of its part of the step.
@@ -207,6 +250,7 @@ void EventIsland::go_to(std::size_t m, double time) {
     scratch_->flown.clear();
     if (member.is_free && !scratch_->record_segments) {
         fly_freely(member, duration);
+        moving.stored_time = time;
     } else {
         moving.beyond = member.end - time;
         moving.step_end = time;
@@ -370,7 +414,11 @@ void EventIsland::resolve(std::vector<PairContact>& contacts, double time) {
     for (const PairContact& contact : contacts) changed.push_back(contact.first), changed.push_back(contact.second);
     std::ranges::sort(changed);
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-    for (const std::size_t m : changed) bring(m, time);
+    for (const std::size_t m : changed) {
+        bring(m, time);
+        changed_at_[m] = time;
+    }
+    for (const PairContact& contact : contacts) count_repetition(contact, time);
     // Missed contacts count as impacts, too, so that every step ends.
     for (const PairContact& contact : contacts) {
         for (const std::size_t m : {contact.first, contact.second}) {
@@ -406,6 +454,22 @@ void EventIsland::resolve(std::vector<PairContact>& contacts, double time) {
     predict_anew(changed);
 }
 
+/// Counts the impacts of a pair that follow each other without other impacts, and without parting in between. Forces
+/// then press the pair together. Elastic spheres would go on like this for ever.
+void EventIsland::count_repetition(const PairContact& contact, double time) {
+    const IslandMember& a = (*members_)[contact.first];
+    const IslandMember& b = (*members_)[contact.second];
+    Repetition& first = repeated_[contact.first];
+    Repetition& second = repeated_[contact.second];
+    const double apart = length(b.moving.state.velocity - a.moving.state.velocity) * (time - first.time);
+    const bool is_repeated = first.partner == contact.second && second.partner == contact.first &&
+                             apart <= kPressedOverlap * std::min(a.radius(), b.radius());
+    const std::uint32_t count = is_repeated ? first.count + 1 : 1;
+    first = {contact.second, count, time};
+    second = {contact.first, count, time};
+    most_repeated_ = std::max(most_repeated_, count);
+}
+
 /// Sets a member's motion after an impact. Its contacts with surfaces are found again.
 void EventIsland::write_back(std::size_t m, const PairBody& body) {
     IslandMember& member = (*members_)[m];
@@ -434,7 +498,7 @@ void EventIsland::write_back(std::size_t m, const PairBody& body) {
 void EventIsland::go_on(std::size_t m) {
     IslandMember& member = (*members_)[m];
     resume(m);
-    if (member.impacts < impact_budget_) return;
+    if (member.impacts < budget_) return;
     member.is_cut_off = true;
     member.outcome.unsimulated_time += member.end - member.moving.state.time;
     member.moving.step_end = member.end;

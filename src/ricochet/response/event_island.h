@@ -17,6 +17,7 @@
 
 #include "ricochet/core/box3.h"
 #include "ricochet/core/pair_meeting.h"
+#include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/coupled_member.h"
 #include "ricochet/response/event_paths.h"
 #include "ricochet/response/island_neighbours.h"
@@ -65,25 +66,29 @@ struct IslandMember {
     }
 };
 
-/// Limits on the impacts between members of an island in a step. The run of an island is aborted if they are exceeded.
+/// Limits of single impacts. An island that exceeds them is handed over: its contacts last, so the rest of the step is
+/// one contact problem.
 struct ImpactLimit {
-    std::size_t in_all = std::numeric_limits<std::size_t>::max();
-    std::uint32_t of_each = std::numeric_limits<std::uint32_t>::max();  ///< impacts of one member
-    bool allows_sinking = true;   ///< false: the run is also aborted if forces drive members into each other
-    bool allows_pressing = true;  ///< false: aborted at the start if forces press together two members that touch
+    std::uint32_t budget = std::numeric_limits<std::uint32_t>::max();   ///< impacts of one member before it stops
+    std::uint32_t of_each = std::numeric_limits<std::uint32_t>::max();  ///< impacts of one member in the step
+    bool allows_sinking = true;   ///< false: handed over at the time from which forces drive members into each other
+    bool allows_pressing = true;  ///< false: handed over at the start if forces press together two members that touch
+    bool keeps_impacts = true;    ///< false: handed over at the start of the step, without its impacts
 };
 
 /// Solves event-driven islands, one after another, and reuses its memory. For one thread.
 class EventIsland {
 public:
     /// The response and the materials must outlive the object.
-    EventIsland(const Response& response, const PairMaterials& materials, std::uint32_t impact_budget)
-        : response_(response), materials_(materials), impact_budget_(impact_budget) {}
+    EventIsland(const Response& response, const PairMaterials& materials)
+        : response_(response), materials_(materials) {}
 
     /// Moves the members to the end of the step. The result does not depend on their order, except for the last bits of
-    /// impacts that share members. scratch: selects the records to write; its lists are overwritten. Returns false if
-    /// `limit` is exceeded. The positions of the members are then undefined.
-    bool run(std::vector<IslandMember>& members, MoveScratch& scratch, const ImpactLimit& limit = {});
+    /// impacts that share members. scratch: selects the records to write; its lists are overwritten. If `limit` is
+    /// exceeded, returns the time, in s, at which the island is handed over. The members have then been moved to this
+    /// time. It is kStartOfStep if they have not been moved.
+    std::optional<double> run(std::vector<IslandMember>& members, MoveScratch& scratch, const ImpactLimit& limit = {});
+    static constexpr double kStartOfStep = -std::numeric_limits<double>::infinity();
 
     /// Returns the impacts of the last run, in order of time.
     [[nodiscard]] const std::vector<PairImpactRecord>& impacts() const { return impacts_; }
@@ -99,6 +104,17 @@ private:
         std::vector<FlownPiece> flown;
     };
 
+    /// Impacts of a member on the same partner that follow each other without parting.
+    struct Repetition {
+        std::size_t partner = std::numeric_limits<std::size_t>::max();
+        std::uint32_t count = 0;
+        double time = 0.0;  ///< s, of the last impact
+    };
+
+    void begin(std::vector<IslandMember>& members, MoveScratch& scratch);
+    std::optional<double> solve(std::vector<IslandMember>& members, MoveScratch& scratch, const ImpactLimit& limit);
+    void resolve_until(double last, const ImpactLimit& limit);
+    [[nodiscard]] std::optional<double> time_of_handover(const ImpactLimit& limit) const;
     void predict(std::size_t m);
     void stay(std::size_t m);
     void fly_freely(IslandMember& member, double duration);
@@ -128,24 +144,31 @@ private:
                 const std::vector<PairBody>& before, const std::vector<PairBody>& after, double time);
     void record_meeting(std::span<const PairContact> contacts, const std::vector<std::size_t>& changed,
                         const std::vector<PairBody>& before, const std::vector<PairBody>& after, double time);
-    [[nodiscard]] bool exceeds(const ImpactLimit& limit) const;
-    [[nodiscard]] bool sinks() const;
+    [[nodiscard]] bool exceeds(const ImpactLimit& limit) const {
+        return most_of_one_ > limit.of_each || (!limit.allows_sinking && most_repeated_ > kMostRepeatedImpacts);
+    }
+    void count_repetition(const PairContact& contact, double time);
+    [[nodiscard]] std::optional<double> time_of_sinking() const;
     [[nodiscard]] bool presses() const;
-    template <class Is>
-    [[nodiscard]] bool any_sinks(const Is& is) const;
+    template <class Visit>
+    void visit_sunk_pairs(const Visit& visit) const;
 
     const Response& response_;
     const PairMaterials& materials_;
-    std::uint32_t impact_budget_ = 0;  // per member and step
+    std::uint32_t budget_ = 0;  // ImpactLimit::budget
     std::vector<IslandMember>* members_ = nullptr;
     MoveScratch* scratch_ = nullptr;
     std::vector<Prediction> predictions_;
-    std::vector<Vec3> begin_;  // m, positions of the members at the start
-    std::vector<Box3> boxes_;  // bounding boxes of the predictions
+    std::vector<IslandMember> start_;    // the members at the start, if the run may be repeated
+    std::vector<double> changed_at_;     // s, time of the last impact of each member; kStartOfStep without one
+    double last_impact_ = kStartOfStep;  // s
+    std::vector<Box3> boxes_;            // bounding boxes of the predictions
     IslandNeighbours neighbours_;
     EarliestTime times_;                 // s, first contact of each member; infinite without one
     std::vector<std::size_t> partners_;  // other member of each of these contacts
+    std::vector<Repetition> repeated_;   // one per member
     std::uint32_t most_of_one_ = 0;      // largest number of impacts of one member
+    std::uint32_t most_repeated_ = 0;    // largest count of a repetition
     std::vector<Flight> resumed_;        // one per member, if a kick has acted in this step
     std::vector<PairImpactRecord> impacts_;
     std::vector<PairMeeting> meetings_;

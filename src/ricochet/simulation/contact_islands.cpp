@@ -13,15 +13,12 @@ Box3 box_within_reach(const ContactIslandMember& member) {
     return ball_box(member.moving->state.position, member.radius + member.reach);
 }
 
-/// Records the path of a member. A member whose path ends early stays at rest until the end of the step.
+/// Records the path of a member after the impacts of the step. A member whose path ends early stays at rest until the
+/// end of the step.
 void keep_path(IslandMember& member, const ForceInput& from, const std::vector<FlownPiece>& flown) {
-    member.trajectory = flown;
-    member.swept = ball_box(from.position, member.radius());
-    for (const FlownPiece& piece : flown) {
-        const Box3 ball = ball_box(piece.path.end, member.radius());
-        member.swept.include(ball.lower);
-        member.swept.include(ball.upper);
-    }
+    member.trajectory.insert(member.trajectory.end(), flown.begin(), flown.end());
+    member.swept.include(ball_box(from.position, member.radius()));
+    for (const FlownPiece& piece : flown) member.swept.include(ball_box(piece.path.end, member.radius()));
     const double begin = flown.empty() ? from.time : flown.back().begin + flown.back().duration;
     if (!member.is_gone() && begin < member.end) {
         const Path path = line_path(flown.empty() ? from.position : flown.back().path.end, Vec3{}, member.end - begin);
@@ -38,17 +35,20 @@ bool ContactIslands::begins_as_contact_island(const std::vector<IslandMember>& m
                                           [](const IslandMember& member) { return member.moving.id; });
 }
 
-/// Returns limits that depend on the energy loss of impacts. A plan uses a single restitution for all connected
-/// contacts. With every method, islands without energy loss are therefore planned only if they have too many impacts.
-ImpactLimit ContactIslands::impacts_before(const std::vector<IslandMember>& members) const {
+/// A plan uses a single restitution for all connected contacts. Islands without energy loss are therefore planned only
+/// if contacts last or a sphere has too many impacts, with every method.
+ImpactLimit ContactIslands::limit_of_impacts() const {
     ImpactLimit limit;
-    if (!parts_.may_be_contact_island()) return limit;
-    limit.in_all =
-        (parts_.materials.loses_energy() ? kMostImpactsPerSphere : kMostElasticImpactsPerSphere) * members.size();
+    const bool is_handed_over = parts_.may_be_contact_island();
+    (is_handed_over ? limit.of_each : limit.budget) = parts_.settings.impact_budget;
+    if (!is_handed_over) return limit;
     limit.allows_sinking = false;
     if (!parts_.materials.loses_energy()) return limit;
     limit.allows_pressing = false;
-    limit.of_each = parts_.settings.method == PairMethod::contacts ? 1 : kMostImpactsOfSphere;
+    if (parts_.settings.method == PairMethod::contacts) {
+        limit.of_each = 1;
+        limit.keeps_impacts = false;
+    }
     return limit;
 }
 
@@ -69,7 +69,8 @@ void ContactIslands::collect_members(std::vector<IslandMember>& members, Work& w
         const bool is_pinched = !parts_.response.rules().bodies.empty() && !member.is_fixed &&
                                 member.moving.stored_time < member.moving.state.time;
         const bool sleeps = contacts_.sleeps(member.particle);
-        work.members.push_back({&member.moving, member.radius(), member.is_fixed, duration, is_pinched, sleeps});
+        const bool is_fixed = member.is_fixed || member.is_gone();
+        work.members.push_back({&member.moving, member.radius(), is_fixed, duration, is_pinched, sleeps});
         work.members.back().material = member.material;
         work.members.back().reach = work.island.first_reach(work.members.back());
     }
@@ -77,7 +78,10 @@ void ContactIslands::collect_members(std::vector<IslandMember>& members, Work& w
 
 void ContactIslands::find_pairs(std::span<const IslandMember> members, Work& work) {
     work.boxes.clear();
-    for (const ContactIslandMember& member : work.members) work.boxes.push_back(box_within_reach(member));
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        // Surfaces have absorbed the members that are gone, so others do not meet them.
+        work.boxes.push_back(members[i].is_gone() ? Box3{} : box_within_reach(work.members[i]));
+    }
     work.near.find(members, work.boxes);
 }
 
@@ -118,13 +122,14 @@ std::vector<std::uint32_t> ContactIslands::expect_reactions(Work& work) {
 }
 
 /// Plans the island. Repeats the plan if it pushes a sphere beyond the sphere's search distance for contacts.
-SolverReport ContactIslands::plan(std::span<const IslandMember> members, Work& work, double duration) const {
+SolverReport ContactIslands::plan(std::span<const IslandMember> members, Work& work, double duration,
+                                  double part) const {
     MoveScratch scratch;
     find_pairs(members, work);
     find_pairs(work, expect_reactions(work));
     SolverReport report;
     for (int k = 0; k < kMostNetworkPlans; ++k) {
-        report = work.island.plan(work.members, work.near.sorted(), duration, contacts_.memory(), scratch);
+        report = work.island.plan(work.members, work.near.sorted(), duration, part, contacts_.memory(), scratch);
         const std::vector<std::uint32_t> changed = work.island.reach_farther(work.members);
         if (changed.empty()) break;
         find_pairs(work, changed);
@@ -140,31 +145,37 @@ void ContactIslands::move(std::vector<IslandMember>& members, Work& work, const 
         own.record_flown = true;
         for (std::size_t i = begin; i < end; ++i) {
             IslandMember& member = members[i];
+            if (member.is_gone()) continue;
             own.flown.clear();
             const ForceInput from = member.moving.state;
-            if (from.coupling != nullptr) member.pair_velocity_change = work.island.given_by_others(i, work.members[i]);
+            if (from.coupling != nullptr)
+                member.pair_velocity_change += work.island.given_by_others(i, work.members[i]);
             member.moving.planned = nullptr;
             member.is_planned = true;
             work.island.move(i, work.members[i], own);
-            member.outcome = work.members[i].outcome;
+            member.outcome.add(work.members[i].outcome);
             const bool falls_asleep = std::ranges::binary_search(falling, member.moving.id);
             if (falls_asleep) member.outcome.end = MoveEnd::held;
             member.is_free = false;
-            member.lists.take(own);
+            member.lists.append(own);
+            own.MoveLists::clear();
             keep_path(member, from, own.flown);
         }
     });
 }
 
-ContactIslandTrace ContactIslands::run(std::vector<IslandMember>& members, const TimeSpan& step) {
+ContactIslandTrace ContactIslands::run(std::vector<IslandMember>& members, const TimeSpan& step, double begin) {
     std::unique_ptr<Work> work = acquire_work();
     collect_members(members, *work);
-    const SolverReport report = plan(members, *work, step.end - step.begin);
+    const double part = begin == step.begin ? 1.0 : (step.end - begin) / (step.end - step.begin);
+    const SolverReport report = plan(members, *work, step.end - begin, part);
     ContactIslandTrace trace;
     trace.is_unsolved = !report.is_converged;
     trace.pressed = work->island.entries();
+    trace.impacts = work->island.impacts();
     trace.onto_sleepers = work->island.impulses_on_sleepers();
-    if (report.is_converged) contacts_.plan_sleep(work->members, work->island, step, trace);
+    // A sphere that impacts have moved in this step is not at rest.
+    if (report.is_converged && begin == step.begin) contacts_.plan_sleep(work->members, work->island, step, trace);
     if (!trace.falling_asleep.empty()) trace.touching = work->island.touching();
     move(members, *work, trace);
     const std::lock_guard lock(spare_mutex_);

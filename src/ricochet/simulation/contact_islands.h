@@ -25,11 +25,12 @@ public:
     /// Returns true if two members pressed on each other in the last step. Such a contact usually lasts, so the island
     /// is a contact island from the start of the step.
     [[nodiscard]] bool begins_as_contact_island(const std::vector<IslandMember>& members) const;
-    /// Returns the numbers of impacts beyond which an event-driven island becomes a contact island. With every method,
-    /// two spheres that collide only with each other in a step collide at the exact time of impact.
-    [[nodiscard]] ImpactLimit impacts_before(const std::vector<IslandMember>& members) const;
-    /// Moves the members of an island to the end of the step. Several threads may run different islands.
-    [[nodiscard]] ContactIslandTrace run(std::vector<IslandMember>& members, const TimeSpan& step);
+    /// Returns the limit beyond which event-driven islands are handed over to run(). With every method, two spheres
+    /// that collide only with each other in a step collide at the exact time of impact.
+    [[nodiscard]] ImpactLimit limit_of_impacts() const;
+    /// Moves the members of an island from the time `begin`, in s, to the end of the step. Members have been moved to
+    /// that time, unless their life in the step begins later. Several threads may run different islands.
+    [[nodiscard]] ContactIslandTrace run(std::vector<IslandMember>& members, const TimeSpan& step, double begin);
 
 private:
     /// Working memory for planning an island, reused for later islands.
@@ -45,7 +46,8 @@ private:
     static void find_pairs(std::span<const IslandMember> members, Work& work);
     static void find_pairs(Work& work, std::span<const std::uint32_t> changed);
     [[nodiscard]] static std::vector<std::uint32_t> expect_reactions(Work& work);
-    [[nodiscard]] SolverReport plan(std::span<const IslandMember> members, Work& work, double duration) const;
+    [[nodiscard]] SolverReport plan(std::span<const IslandMember> members, Work& work, double duration,
+                                    double part) const;
     void move(std::vector<IslandMember>& members, Work& work, const ContactIslandTrace& trace) const;
 
     PairParts parts_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include "ricochet/core/parallel.h"
@@ -87,26 +88,27 @@ void IslandBuilder::run(const TimeSpan& step) {
     parallel_for_blocks(islands_.size(), kIslandBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         MoveScratch scratch;
         parts_.mover.prepare(scratch);
-        EventIsland worker(parts_.response, parts_.materials, parts_.settings.impact_budget);
+        EventIsland worker(parts_.response, parts_.materials);
         for (std::size_t n = begin; n < end; ++n) {
             Island& island = islands_[n];
             if (!island.members.empty()) continue;  // unchanged since the last round
             island.round = round_;
             collect_members(island, step);
-            island.is_contact_island = contact_islands_.begins_as_contact_island(island.members);
-            if (!island.is_contact_island) {
-                island.is_contact_island =
-                    !worker.run(island.members, scratch, contact_islands_.impacts_before(island.members));
-                if (island.is_contact_island) collect_members(island, step);
-            }
-            if (island.is_contact_island) {
-                island.trace = contact_islands_.run(island.members, step);
-                continue;
-            }
-            island.impacts = worker.impacts();
-            island.meetings = worker.meetings();
+            solve(island, worker, scratch, step);
         }
     });
+}
+
+/// Resolves an island impact by impact, until its contacts last. The rest of the step is one contact problem.
+void IslandBuilder::solve(Island& island, EventIsland& worker, MoveScratch& scratch, const TimeSpan& step) {
+    std::optional<double> lasting = EventIsland::kStartOfStep;
+    if (!contact_islands_.begins_as_contact_island(island.members)) {
+        lasting = worker.run(island.members, scratch, contact_islands_.limit_of_impacts());
+        island.impacts = worker.impacts();
+        island.meetings = worker.meetings();
+    }
+    island.is_contact_island = lasting.has_value();
+    if (lasting) island.trace = contact_islands_.run(island.members, step, std::max(step.begin, *lasting));
 }
 
 /// Collects an island's members at the start of the step, ordered by position, so that ids do not affect the result.

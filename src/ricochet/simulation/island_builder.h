@@ -54,6 +54,7 @@ private:
     [[nodiscard]] std::vector<Island> islands_of(const std::vector<std::uint32_t>& involved);
     void run(const TimeSpan& step);
     void collect_members(Island& island, const TimeSpan& step);
+    void solve(Island& island, EventIsland& worker, MoveScratch& scratch, const TimeSpan& step);
     [[nodiscard]] bool is_out_of_bounds(const Island& island, const IslandMember& member) const;
     [[nodiscard]] OutOfBoundsMembers members_out_of_bounds() const;
     [[nodiscard]] static bool may_have_met(const IslandMember& first, const IslandMember& second);

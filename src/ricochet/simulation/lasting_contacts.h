@@ -27,6 +27,7 @@ struct ContactIslandTrace {
     std::vector<SleeperImpulse> onto_sleepers;         ///< impulses of awake spheres on sleepers
     std::vector<SleeperImpulse> stopped;               ///< momentum that spheres lose when they fall asleep
     std::vector<ContactKey> touching;                  ///< pairs that touch; empty if no sphere falls asleep
+    PlannedImpacts impacts;                            ///< energy of the impacts in it
     bool is_unsolved = false;                          ///< true if the solver did not reach the tolerance
 };
 

@@ -26,6 +26,8 @@ struct SimulationStatistics {
     std::uint64_t removed = 0;
     std::uint64_t contacts = 0;
     std::uint64_t pair_impacts = 0;
+    double joined_impact_energy = 0.0;
+    double joined_impact_loss = 0.0;
     double overlap_largest = 0.0;
     double overlap_verified = 0.0;
     std::uint64_t pair_violations = 0;
@@ -133,6 +135,10 @@ inline constexpr Statistic kStatistics[] = {
     {"penetration_sum", &S::penetration_sum, "sum of these depths, in m", apart},
     {"removed", &S::removed, "particles removed by remove_particles()", apart},
     {"pair_impacts", &S::pair_impacts, "impacts between two spheres", of_spheres},
+    {"joined_impact_energy", &S::joined_impact_energy,
+     "energy of approach of the impacts that were solved together with others, in J", of_spheres},
+    {"joined_impact_loss", &S::joined_impact_loss,
+     "part of joined_impact_energy that these impacts lost beyond the restitution of each", of_spheres},
     {"overlap_largest", &S::overlap_largest, "largest overlap of two spheres at a step's end, over the smaller radius",
      of_spheres, largest},
     {"born_in_overlap", &S::born_in_overlap, "spheres that overlapped others at their birth", of_spheres},

@@ -2,7 +2,7 @@
 /// Tolerances of impacts between spheres, and of the islands that they form. See core/tolerances.h.
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
 
 namespace ricochet {
 
@@ -56,17 +56,10 @@ inline constexpr double kBoundMetGap = 1e-6;
 inline constexpr int kMostImpactSweeps = 20000;
 inline constexpr double kImpactSolved = 0x1p-54;
 
-/// Number of impacts per sphere and step, beyond which an event-driven island becomes a contact island. The first
-/// constant applies if impacts lose energy, and the second one if none does. Reason: a contact island loses energy that
-/// elastic impacts would keep. Smaller: sparse islands become contact islands. Larger: dense islands take more time.
-inline constexpr std::size_t kMostImpactsPerSphere = 4;
-inline constexpr std::size_t kMostElasticImpactsPerSphere = 64;
-
-/// Number of impacts of a single sphere in a step, beyond which its event-driven island becomes a contact island. It
-/// applies if impacts lose energy. Reason: a sphere with so many impacts is pressed between its neighbours, even if the
-/// rest of the island has few impacts. Smaller: sparse islands become contact islands. Larger: dense islands take more
-/// time.
-inline constexpr std::size_t kMostImpactsOfSphere = 100;
+/// Number of impacts of a pair, without parting by more than kPressedOverlap in between, beyond which their contact
+/// lasts. Reason: only forces bring such a pair together again. Smaller: pairs in a tight rack may count as lasting
+/// contacts. Larger: elastic spheres that forces press together take more time.
+inline constexpr std::uint32_t kMostRepeatedImpacts = 32;
 
 /// Expected displacement of a sphere by a neighbour, as a part of the longest path of that neighbour. It extends the
 /// search for contacts. Smaller: contact islands find further contacts only in a second plan. Larger: more candidates.

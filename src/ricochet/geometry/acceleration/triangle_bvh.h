@@ -61,8 +61,8 @@ public:
     using VisitTube = double (*)(void* context, std::uint32_t triangle, double enter, double leave);
 
     /// Visits every triangle that the tube touches, and few other triangles. TriangleCluster::overlaps() selects them,
-    /// four triangles at a time. Of a tube whose margin and sagitta exceed margin() + slack(), only the triangles within
-    /// that distance of the path are certain to be visited.
+    /// four triangles at a time. Of a tube whose margin and sagitta exceed margin() + slack(), only the triangles
+    /// within that distance of the path are certain to be visited.
     void query_tube(const Tube& tube, void* context, VisitTube visit) const;
 
     /// Calls query_tube() with any callable `double(std::uint32_t triangle, double enter, double leave)`.

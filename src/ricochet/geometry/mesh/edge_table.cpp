@@ -1,7 +1,6 @@
 #include "ricochet/geometry/mesh/edge_table.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace ricochet {
 namespace {

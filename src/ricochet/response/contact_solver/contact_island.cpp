@@ -35,7 +35,7 @@ constexpr double kClear = 0.9;
 }  // namespace
 
 SolverReport ContactIsland::plan(std::span<const ContactIslandMember> members, std::span<const NeighbourPair> pairs,
-                                 double duration, const WarmStartMemory& memory, MoveScratch& scratch) {
+                                 double duration, double part, const WarmStartMemory& memory, MoveScratch& scratch) {
     duration_ = duration;
     contacts_.clear();
     keys_.clear();
@@ -43,7 +43,7 @@ SolverReport ContactIsland::plan(std::span<const ContactIslandMember> members, s
     edges_of_sleep_.clear();
     first_wall_.clear();
     clear_.clear();
-    add_bodies(members, memory);
+    set_part(part, add_bodies(members, memory));
     add_pairs(pairs);
     add_walls(members, scratch);
     for (std::size_t k = 0; k < 2 * kPrefetchDistance; ++k) warm_start(keys_.size() + k);
@@ -53,13 +53,14 @@ SolverReport ContactIsland::plan(std::span<const ContactIslandMember> members, s
     return solver_.solve(bodies_, contacts_, wished);
 }
 
-/// Sets the duration as a fraction of the time step. A time step removes a fraction of an overlap. A substep removes
-/// correspondingly less, because otherwise the spheres would be ejected.
-void ContactIsland::set_part(bool is_coupled) {
-    part_ = is_coupled ? std::min(1.0, duration_ / rules_.settings.time_step) : 1.0;
+/// Sets the duration as a fraction of the time step. A time step removes a fraction of an overlap. A shorter plan
+/// removes correspondingly less, because otherwise the spheres would be ejected. Only coupled particles take substeps.
+void ContactIsland::set_part(double part, bool is_coupled) {
+    part_ = is_coupled ? std::min(1.0, duration_ / rules_.settings.time_step) : part;
 }
 
-void ContactIsland::add_bodies(std::span<const ContactIslandMember> members, const WarmStartMemory& memory) {
+/// Adds the members. Returns true if one of them is coupled to other particles.
+bool ContactIsland::add_bodies(std::span<const ContactIslandMember> members, const WarmStartMemory& memory) {
     bodies_.clear();
     members_.clear();
     memories_.clear();
@@ -92,7 +93,7 @@ void ContactIsland::add_bodies(std::span<const ContactIslandMember> members, con
         body.inverse_mass = 1.0 / state.mass;
         body.inverse_inertia = 2.5 / (state.mass * member.radius * member.radius);
     }
-    set_part(is_coupled);
+    return is_coupled;
 }
 
 void ContactIsland::add_pairs(std::span<const NeighbourPair> pairs) {
@@ -254,6 +255,25 @@ void ContactIsland::set_exactness(const Pace& pace, double enough) {
         if (contact.b != SolverContact::kWall) speed = std::max(speed, speed_of(members_[contact.b]));
         contact.exactness = std::max(1.0, enough / std::max(kNetworkSpeedError * speed, still));
     }
+}
+
+/// A single impact with restitution e and approach speed u has the impulse P = m (1 + e) u for the effective mass m.
+/// Its energy m u^2 / 2 is P u / (2 (1 + e)). If it separates with w instead of e u, it loses P (e u - w) / 2 more.
+PlannedImpacts ContactIsland::impacts() const {
+    PlannedImpacts sum;
+    for (std::size_t k = 0; k < contacts_.size(); ++k) {
+        const SolverContact& contact = contacts_[k];
+        const double impulse = solver_.impulses()[k].normal;
+        if (!(impulse > 0.0) || !(contact.restitution > 0.0) || contact.touched) continue;
+        const bool is_wall = contact.b == SolverContact::kWall;
+        const Vec3& before = is_wall ? contact.wall_velocity : members_[contact.b].velocity;
+        const Vec3& after = is_wall ? contact.wall_velocity : bodies_[contact.b].velocity;
+        const double approach = -dot(members_[contact.a].velocity - before, contact.normal);
+        const double separation = dot(bodies_[contact.a].velocity - after, contact.normal);
+        sum.approach += 0.5 * impulse * approach / (1.0 + contact.restitution);
+        sum.loss += 0.5 * impulse * std::max(0.0, contact.restitution * approach - separation);
+    }
+    return sum;
 }
 
 void ContactIsland::move(std::size_t index, ContactIslandMember& member, MoveScratch& scratch) const {

@@ -38,6 +38,13 @@ struct SleeperImpulse {
     Vec3 impulse;                ///< in N s
 };
 
+/// Energy of the impacts of a plan, in J. An impact approaches faster than the resting speed, in a contact that did not
+/// press before.
+struct PlannedImpacts {
+    double approach = 0.0;  ///< energy of the approach of all impacts, each as if it occurred alone
+    double loss = 0.0;      ///< part of it that is lost because they separate more slowly than each would alone
+};
+
 /// Solves and moves one contact island after the other, and reuses its memory. The forces first give each sphere its
 /// velocity at the end of the step (symplectic Euler). Then all contacts are found and solved, and each sphere moves
 /// along its plan.
@@ -48,10 +55,10 @@ public:
 
     /// Returns the search distance for the first plan, in m: more than the length of the member's free path.
     [[nodiscard]] double first_reach(const ContactIslandMember& member) const;
-    /// Plans a step of `duration` seconds. pairs: members within reach of each other. memory: contacts of the last
-    /// step.
+    /// Plans `duration` seconds, which are this part of the step. pairs: members within reach of each other. memory:
+    /// contacts of the last step.
     SolverReport plan(std::span<const ContactIslandMember> members, std::span<const NeighbourPair> pairs,
-                      double duration, const WarmStartMemory& memory, MoveScratch& scratch);
+                      double duration, double part, const WarmStartMemory& memory, MoveScratch& scratch);
     /// Moves the member with this index as planned. Several threads may move different members.
     void move(std::size_t index, ContactIslandMember& member, MoveScratch& scratch) const;
 
@@ -69,6 +76,8 @@ public:
     [[nodiscard]] std::vector<NeighbourPair> pressing() const;
     /// Returns the impulses that awake spheres exert on sleeping spheres, one per contact.
     [[nodiscard]] std::vector<SleeperImpulse> impulses_on_sleepers() const;
+    /// Returns the energy of the impacts of the last plan, with surfaces and between members.
+    [[nodiscard]] PlannedImpacts impacts() const;
     /// Returns the pairs with at most a very small gap, whether they press or not.
     [[nodiscard]] std::vector<ContactKey> touching() const;
     /// Increases the search distance of members whose plan leads beyond it. Returns their indices in ascending order.
@@ -96,9 +105,9 @@ private:
         double smallest = INFINITY;   ///< smallest radius, in m
     };
 
-    void set_part(bool is_coupled);
+    void set_part(double part, bool is_coupled);
     [[nodiscard]] double parted(double gap) const { return gap < 0.0 ? part_ * gap : gap; }
-    void add_bodies(std::span<const ContactIslandMember> members, const WarmStartMemory& memory);
+    [[nodiscard]] bool add_bodies(std::span<const ContactIslandMember> members, const WarmStartMemory& memory);
     void add_pairs(std::span<const NeighbourPair> pairs);
     void add_pair(std::uint32_t first, std::uint32_t second);
     void add_walls(std::span<const ContactIslandMember> members, MoveScratch& scratch);
@@ -116,7 +125,7 @@ private:
     const ResponseRules& rules_;
     const PairMaterials& materials_;
     double duration_ = 0.0;
-    double part_ = 1.0;  // duration as a fraction of the time step, below 1 if coupled particles take substeps
+    double part_ = 1.0;  // fraction of the time step, below 1 after impacts in the step and in substeps
     std::vector<SolverBody> bodies_;
     std::vector<MemberState> members_;                   // one per member
     std::vector<WarmStartMemory::OfParticle> memories_;  // one per member

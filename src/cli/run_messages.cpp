@@ -33,8 +33,10 @@ void print_pair_impacts(const SimulationStatistics& statistics) {
     print("  {} {} between spheres, besides those that are solved together\n", statistics.pair_impacts,
           statistics.pair_impacts == 1 ? "impact" : "impacts");
     if (!(statistics.joined_impact_loss > 0.0)) return;
-    print("  impacts that are solved together lost {:.3g} J beyond their restitution, {:.2g} % of their energy\n",
-          statistics.joined_impact_loss, 100.0 * statistics.joined_impact_loss / statistics.joined_impact_energy);
+    print(
+        "  impacts that are solved together lost {:.3g} J beyond their restitution, {:.3g} % of the energy of their "
+        "spheres\n",
+        statistics.joined_impact_loss, 100.0 * statistics.joined_impact_loss / statistics.joined_impact_energy);
 }
 
 /// Prints one line with the most frequently hit groups of a collider.

@@ -103,7 +103,7 @@ void PairMotion::after_substep(const ParticleRange& /*generation*/, const TimeSp
     for (const IslandBuilder::Island& island : islands) {
         if (island.is_contact_island) traces.push_back(&island.trace);
         unsolved_ += island.trace.is_unsolved ? 1 : 0;
-        recorder_.statistics().joined_impact_energy += island.trace.impacts.approach;
+        recorder_.statistics().joined_impact_energy += island.trace.impacts.energy;
         recorder_.statistics().joined_impact_loss += island.trace.impacts.loss;
     }
     contacts_.check_sleepers(step, blocks);

@@ -43,7 +43,8 @@ SolverReport ContactIsland::plan(std::span<const ContactIslandMember> members, s
     edges_of_sleep_.clear();
     first_wall_.clear();
     clear_.clear();
-    set_part(part, add_bodies(members, memory));
+    // A short plan removes a smaller fraction of an overlap. Otherwise spheres would be ejected. Substeps are coupled.
+    part_ = add_bodies(members, memory) ? std::min(1.0, duration_ / rules_.settings.time_step) : part;
     add_pairs(pairs);
     add_walls(members, scratch);
     for (std::size_t k = 0; k < 2 * kPrefetchDistance; ++k) warm_start(keys_.size() + k);
@@ -51,12 +52,6 @@ SolverReport ContactIsland::plan(std::span<const ContactIslandMember> members, s
     const SolverSettings wished = settings(pace);
     if (contacts_.size() > kFewNetworkContacts) set_exactness(pace, wished.enough);
     return solver_.solve(bodies_, contacts_, wished);
-}
-
-/// Sets the duration as a fraction of the time step. A time step removes a fraction of an overlap. A shorter plan
-/// removes correspondingly less, because otherwise the spheres would be ejected. Only coupled particles take substeps.
-void ContactIsland::set_part(double part, bool is_coupled) {
-    part_ = is_coupled ? std::min(1.0, duration_ / rules_.settings.time_step) : part;
 }
 
 /// Adds the members. Returns true if one of them is coupled to other particles.
@@ -257,10 +252,12 @@ void ContactIsland::set_exactness(const Pace& pace, double enough) {
     }
 }
 
-/// A single impact with restitution e and approach speed u has the impulse P = m (1 + e) u for the effective mass m.
-/// Its energy m u^2 / 2 is P u / (2 (1 + e)). If it separates with w instead of e u, it loses P (e u - w) / 2 more.
+/// An impulse P on a contact with the approach speed u and the separation speed w takes the energy P (u - w) / 2. A
+/// single impact of restitution e separates with e u. In an island the other contacts may speed up one contact and slow
+/// down another, so the sum over all counts.
 PlannedImpacts ContactIsland::impacts() const {
     PlannedImpacts sum;
+    std::vector<double> energies(members_.size(), 0.0);  // J, of the members in impacts
     for (std::size_t k = 0; k < contacts_.size(); ++k) {
         const SolverContact& contact = contacts_[k];
         const double impulse = solver_.impulses()[k].normal;
@@ -270,9 +267,14 @@ PlannedImpacts ContactIsland::impacts() const {
         const Vec3& after = is_wall ? contact.wall_velocity : bodies_[contact.b].velocity;
         const double approach = -dot(members_[contact.a].velocity - before, contact.normal);
         const double separation = dot(bodies_[contact.a].velocity - after, contact.normal);
-        sum.approach += 0.5 * impulse * approach / (1.0 + contact.restitution);
-        sum.loss += 0.5 * impulse * std::max(0.0, contact.restitution * approach - separation);
+        sum.loss += 0.5 * impulse * (contact.restitution * approach - separation);
+        for (const std::uint32_t i : {contact.a, is_wall ? contact.a : contact.b}) {
+            if (members_[i].stays) continue;
+            energies[i] = 0.5 * length_squared(members_[i].velocity) / bodies_[i].inverse_mass;
+        }
     }
+    for (const double energy : energies) sum.energy += energy;
+    sum.loss = std::max(0.0, sum.loss);
     return sum;
 }
 

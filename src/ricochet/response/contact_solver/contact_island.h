@@ -38,11 +38,10 @@ struct SleeperImpulse {
     Vec3 impulse;                ///< in N s
 };
 
-/// Energy of the impacts of a plan, in J. An impact approaches faster than the resting speed, in a contact that did not
-/// press before.
+/// Energies of the impacts of a plan, in J. Impacts approach faster than the resting speed, and did not press before.
 struct PlannedImpacts {
-    double approach = 0.0;  ///< energy of the approach of all impacts, each as if it occurred alone
-    double loss = 0.0;      ///< part of it that is lost because they separate more slowly than each would alone
+    double energy = 0.0;  ///< kinetic energy of the members in impacts, before the plan
+    double loss = 0.0;    ///< energy that all impacts lose beyond their restitution
 };
 
 /// Solves and moves one contact island after the other, and reuses its memory. The forces first give each sphere its
@@ -105,7 +104,6 @@ private:
         double smallest = INFINITY;   ///< smallest radius, in m
     };
 
-    void set_part(double part, bool is_coupled);
     [[nodiscard]] double parted(double gap) const { return gap < 0.0 ? part_ * gap : gap; }
     [[nodiscard]] bool add_bodies(std::span<const ContactIslandMember> members, const WarmStartMemory& memory);
     void add_pairs(std::span<const NeighbourPair> pairs);

@@ -32,11 +32,13 @@ void print_impulse_share(const ImpulseSizes& sizes) {
 void print_pair_impacts(const SimulationStatistics& statistics) {
     print("  {} {} between spheres, besides those that are solved together\n", statistics.pair_impacts,
           statistics.pair_impacts == 1 ? "impact" : "impacts");
-    if (!(statistics.joined_impact_loss > 0.0)) return;
-    print(
-        "  impacts that are solved together lost {:.3g} J beyond their restitution, {:.3g} % of the energy of their "
-        "spheres\n",
-        statistics.joined_impact_loss, 100.0 * statistics.joined_impact_loss / statistics.joined_impact_energy);
+    const double loss = statistics.joined_impact_loss;
+    const double energy = statistics.joined_impact_energy;
+    if (!(loss > 0.0)) return;
+    // A moving surface can hit spheres at rest, and gives them more energy than they have.
+    const std::string share =
+        loss <= energy ? fmt::format(", {:.3g} % of the energy of their spheres", 100.0 * loss / energy) : "";
+    print("  impacts that are solved together lost {:.3g} J beyond their restitution{}\n", loss, share);
 }
 
 /// Prints one line with the most frequently hit groups of a collider.

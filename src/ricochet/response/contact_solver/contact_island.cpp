@@ -43,7 +43,7 @@ SolverReport ContactIsland::plan(std::span<const ContactIslandMember> members, s
     edges_of_sleep_.clear();
     first_wall_.clear();
     clear_.clear();
-    // A short plan removes a smaller fraction of an overlap. Otherwise spheres would be ejected. Substeps are coupled.
+    // Short plans remove less of an overlap, because they would eject spheres. Only coupled particles take substeps.
     part_ = add_bodies(members, memory) ? std::min(1.0, duration_ / rules_.settings.time_step) : part;
     add_pairs(pairs);
     add_walls(members, scratch);
@@ -253,8 +253,8 @@ void ContactIsland::set_exactness(const Pace& pace, double enough) {
 }
 
 /// An impulse P on a contact with the approach speed u and the separation speed w takes the energy P (u - w) / 2. A
-/// single impact of restitution e separates with e u. In an island the other contacts may speed up one contact and slow
-/// down another, so the sum over all counts.
+/// single impact of restitution e separates with e u. Contacts of an island
+/// influence each other, so only their sum is meaningful.
 PlannedImpacts ContactIsland::impacts() const {
     PlannedImpacts sum;
     std::vector<double> energies(members_.size(), 0.0);  // J, of the members in impacts

@@ -46,8 +46,8 @@ inline constexpr Setting<Struct> kSphereContactTable[] = {
 
 inline constexpr Setting<PairContactSettings> kPairBudgetTable[] = {
     {"impact_budget", &PairContactSettings::impact_budget, kCountFromOne, "",
-     "Largest number of impacts of one sphere on others in one step. A sphere that spends the budget stops for the "
-     "rest of the step, and the omitted time is counted."},
+     "Largest number of impacts of one sphere on others in one step. If a sphere spends the budget, its contacts are "
+     "computed at once; with the method `events` it stops for the rest of the step, and the omitted time is counted."},
 };
 
 inline constexpr Setting<ErrorTolerance> kToleranceTable[] = {

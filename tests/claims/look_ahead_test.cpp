@@ -15,6 +15,7 @@
 #include "ricochet/core/random.h"
 #include "ricochet/simulation.h"
 #include "support/counts.h"
+#include "support/integrators.h"
 #include "support/random_draws.h"
 #include "support/simple_meshes.h"
 
@@ -25,8 +26,11 @@ namespace RICOCHET_FILE {
 /// on the seed.
 class SparseCase {
 public:
+    enum class Forces { uniform, varying };
+
     /// shift: offset of the whole scene from the origin, in m.
-    explicit SparseCase(std::uint64_t seed, const Vec3& shift = {}) : random_(seed, 31, 0), shift_(shift) {}
+    explicit SparseCase(std::uint64_t seed, const Vec3& shift = {}, Forces forces = Forces::uniform)
+        : random_(seed, 31, 0), shift_(shift), forces_(forces) {}
 
     SimulationSetup setup() {
         SimulationSetup setup;
@@ -38,6 +42,7 @@ public:
         setup.options.record_contacts = true;
         setup.options.verify = pick(3) == 0;
         if (pick(2) == 0) setup.forces.push_back(make_gravity(testing::random_vector(random_, 9.0)));
+        if (forces_ == Forces::varying) add_varying_forces(setup);
         setup.materials.push_back({"wall", pick(2) == 0 ? 1.0 : random_.uniform(), pick(2) == 0 ? 0.0 : 0.3});
         setup.colliders.push_back({"mesh", MeshShape{mesh(), {}, "", {}}, 0});
         if (pick(2) == 0)
@@ -54,6 +59,16 @@ public:
     }
 
 private:
+    // Some change slowly along a path, and some within a few steps.
+    void add_varying_forces(SimulationSetup& setup) {
+        setup.options.integrator = test::kAllIntegrators[pick(static_cast<int>(test::kAllIntegrators.size()))];
+        setup.forces.push_back(pick(2) == 0 ? make_linear_drag(random_.uniform()) : make_quadratic_drag(0.2));
+        if (pick(3) == 0)
+            setup.forces.push_back(make_swirl(shift_, random_.unit_vector(), 20.0 * random_.uniform(), 0.1));
+        if (pick(3) == 0)
+            setup.forces.push_back(make_point_gravity({{shift_ + place(), 5.0 * random_.uniform(), 0.05}}));
+    }
+
     std::size_t pick(int count) { return static_cast<std::size_t>(random_.uniform() * count); }
 
     Vec3 place() {
@@ -95,6 +110,7 @@ private:
 
     RandomSequence random_;
     Vec3 shift_;
+    Forces forces_;
 };
 
 void expect_same_records(const Simulation& a, const Simulation& b) {
@@ -122,16 +138,18 @@ void expect_same_statistics(const Simulation& a, const Simulation& b) {
 
 /// Runs random scenes with and without look-ahead and spatial order, and expects equal results. Returns the number of
 /// impacts.
-std::uint64_t expect_the_same_with_look_ahead(const Vec3& shift) {
+std::uint64_t expect_the_same_with_look_ahead(int cases, const Vec3& shift,
+                                              SparseCase::Forces forces = SparseCase::Forces::uniform) {
     std::uint64_t impacts = 0;
-    for (int i = 0; i < test::scaled(150); ++i) {
+    for (int i = 0; i < cases; ++i) {
         SCOPED_TRACE("case " + std::to_string(i));
         const auto seed = static_cast<std::uint64_t>(i);
-        SimulationSetup plain = SparseCase(seed, shift).setup();
+        SimulationSetup plain = SparseCase(seed, shift, forces).setup();
+        plain.acceleration.culling = i % 16 != 5;
         plain.acceleration.look_ahead = false;
         plain.acceleration.spatial_order = false;
         Simulation reference(std::move(plain));
-        Simulation simulation(SparseCase(seed, shift).setup());
+        Simulation simulation(SparseCase(seed, shift, forces).setup());
         while (!simulation.finished()) {
             simulation.step();
             reference.step();
@@ -147,11 +165,26 @@ std::uint64_t expect_the_same_with_look_ahead(const Vec3& shift) {
 }
 
 TEST(LookAheadRuns, ChangesNoImpactAndNoBitOfTheStateInRandomScenes) {
-    EXPECT_GT(expect_the_same_with_look_ahead({}), static_cast<std::uint64_t>(test::scaled(150)) * 20);
+    const int cases = test::scaled(150);
+    EXPECT_GT(expect_the_same_with_look_ahead(cases, {}), static_cast<std::uint64_t>(cases) * 20);
 }
 
 TEST(LookAheadRuns, ChangesNothingFarFromTheOrigin) {
-    EXPECT_GT(expect_the_same_with_look_ahead({3e6, -5e6, 1e6}), static_cast<std::uint64_t>(test::scaled(150)) * 20);
+    const int cases = test::scaled(150);
+    EXPECT_GT(expect_the_same_with_look_ahead(cases, {3e6, -5e6, 1e6}), static_cast<std::uint64_t>(cases) * 20);
+}
+
+// The reference knows no free space along a path, and in some cases none at all.
+TEST(LookAheadRuns, ChangesNothingUnderForcesThatVary) {
+    const int cases = test::scaled(60);
+    EXPECT_GT(expect_the_same_with_look_ahead(cases, {}, SparseCase::Forces::varying),
+              static_cast<std::uint64_t>(cases) * 20);
+}
+
+TEST(LookAheadRuns, ChangesNothingUnderForcesThatVaryFarFromTheOrigin) {
+    const int cases = test::scaled(60);
+    EXPECT_GT(expect_the_same_with_look_ahead(cases, {3e6, -5e6, 1e6}, SparseCase::Forces::varying),
+              static_cast<std::uint64_t>(cases) * 20);
 }
 
 /// A sphere is born with its centre on a face that occurs twice, with both windings. The sphere cannot leave to either

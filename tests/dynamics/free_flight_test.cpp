@@ -62,7 +62,7 @@ TEST(ForeseenPath, PassesThroughTheEndsOfAllFurtherSteps) {
         for (const IntegratorKind kind : kKinds) {
             const Flight whole = begin_flight(kind, field, state, h);
             const Flight flight = first == h ? whole : resume_flight(kind, field, state, whole, first);
-            const Path prediction = look_ahead_path(kind, flight, h, first + 20.0 * h);
+            const Path prediction = look_ahead_path(kind, flight, acceleration, h, first + 20.0 * h);
             const double beside = 0.125 * length(acceleration) * h * h * (1.0 + 1e-9);
             for (const double part : {0.0, 0.3, 0.8, 1.0}) {
                 EXPECT_LE(length(prediction.position(part * first) - flight.path.position(part * first)),

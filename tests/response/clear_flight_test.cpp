@@ -20,6 +20,8 @@ namespace RICOCHET_FILE {
 
 using testing::mesh_collider;
 
+constexpr double kTimeStep = 0.02;  // s
+
 /// A ball of triangles under gravity and drag.
 class Air {
 public:
@@ -31,7 +33,12 @@ public:
         forces_ = ForceField(std::move(forces));
     }
 
-    [[nodiscard]] ResponseRules rules() const { return {world_, bodies_, forces_, materials_, settings_}; }
+    [[nodiscard]] ResponseRules rules(bool look_ahead = false) const {
+        ResponseRules rules{world_, bodies_, forces_, materials_, settings_};
+        rules.settings.time_step = kTimeStep;
+        rules.look_ahead = look_ahead;
+        return rules;
+    }
     CollisionWorld& world() { return world_; }
 
 private:
@@ -100,6 +107,40 @@ TEST_P(ClearFlight, EndsInTheBitsOfAStepThatTestsEveryTriangle) {
 
 INSTANTIATE_TEST_SUITE_P(By, ClearFlight, ::testing::ValuesIn(test::kAllIntegrators),
                          [](const auto& tested) { return std::string(name_of(tested.param)); });
+
+// The particle first makes a step with a contact query, which looks ahead along a forecast.
+TEST_P(ClearFlight, StaysInTheSpaceOfAForecastForManySteps) {
+    Air air(GetParam());
+    air.world().prepare_radius(0.1);
+    const ExactResponse response(air.rules(/*look_ahead=*/true));
+    RandomSequence random(10, 0, 0);
+    int steps = 0;
+    int forecasts = 0;
+    for (int k = 0; k < test::scaled(200); ++k) {
+        SCOPED_TRACE("case " + std::to_string(k));
+        MovingParticle particle = random_particle(random, k % 2 == 0 ? 0.0 : 0.1);
+        MoveScratch scratch;
+        air.world().set_culling(true);
+        (void)response.move(particle, kTimeStep, scratch);
+        if (particle.clear.is_at_rest()) continue;
+        ++forecasts;
+        std::optional<Flight> flight;
+        MovingParticle slow = particle;
+        const ClearSpace forecast = particle.clear;
+        while (fly_clear(air.rules(true), particle, kTimeStep, scratch, flight)) {
+            if (particle.clear.begin != forecast.begin) break;
+            ++steps;
+            air.world().set_culling(false);
+            (void)response.move(slow, kTimeStep, scratch);
+            air.world().set_culling(true);
+            ASSERT_EQ(particle.state.position, slow.state.position);
+            ASSERT_EQ(particle.state.velocity, slow.state.velocity);
+        }
+        EXPECT_LE(slow.state.time, forecast.end);
+    }
+    EXPECT_GT(forecasts, test::scaled(200) / 4);
+    EXPECT_GT(steps, 4 * forecasts);
+}
 
 TEST(ClearFlight, ParticleInContactOrNearASurfaceIsNotMoved) {
     const Air air(IntegratorKind::midpoint);

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "collision/worlds.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/simulation.h"
@@ -231,6 +232,23 @@ TEST(Counters, TotalsDoNotDependOnThreadsSwitchesOrVerification) {
         EXPECT_EQ(run(2, [](SimulationSetup& s) { s.acceleration.look_ahead = false; }), one);
         EXPECT_EQ(run(2, [](SimulationSetup& s) { s.acceleration.sleeping = false; }), one);
     }
+}
+
+// With drag, particles fly in free spaces beside the mesh.
+TEST(Counters, TotalsUnderDragDoNotDependOnKnownFreeSpace) {
+    const auto run = [](const std::function<void(SimulationSetup&)>& change) {
+        SimulationSetup setup = rain();
+        setup.forces.push_back(make_linear_drag(0.05));
+        auto ground = std::make_shared<const TriangleMesh>(testing::floor_mesh(1.0, 8));
+        setup.colliders = {{"ground", MeshShape{std::move(ground), {}, "", {}}, 0}};
+        change(setup);
+        return text_of(finished(std::move(setup)).counters());
+    };
+    const std::string one = run([](SimulationSetup&) {});
+    EXPECT_EQ(one.find(" 0 "), std::string::npos) << one;
+    EXPECT_EQ(run([](SimulationSetup& s) { s.acceleration.look_ahead = false; }), one);
+    EXPECT_EQ(run([](SimulationSetup& s) { s.acceleration.culling = false; }), one);
+    EXPECT_EQ(run([](SimulationSetup& s) { s.options.verify = true; }), one);
 }
 
 TEST(Counters, RunWithCountersHasTheBitsOfARunWithout) {

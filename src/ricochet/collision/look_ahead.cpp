@@ -312,9 +312,10 @@ void LookAheadQuery::keep_candidates(double until) {
 ///
 /// Reason: the positions after the following steps are rounded. Each step must lead away from the triangle by more than
 /// the rounding error. Otherwise rounding could move the sphere back through the triangle. A safe position elsewhere on
-/// the path must not lie beyond the triangle either.
+/// the path must not lie beyond the triangle either. If the path is only a forecast, the sphere may turn back.
 bool LookAheadQuery::is_left_behind(double separating_speed) const {
-    if (separating_speed == 0.0 || ahead_.path.degree > 1 || !(margins_.radius > ahead_.margin)) return false;
+    const bool may_turn = ahead_.path.degree > 1 || ahead_.deviation > 0.0;
+    if (separating_speed == 0.0 || may_turn || !(margins_.radius > ahead_.margin)) return false;
     return separating_speed * ahead_.least > kPathRounding * largest_coordinate(ahead_.path);
 }
 

@@ -47,6 +47,9 @@ struct LookAhead {
     double margin = 0.0;
     double least = 0.0;   ///< in s along the path, one step; a shorter free time is not worth the cost
     double beyond = 0.0;  ///< in s; triangles that come near within this time after the free time are also found
+    /// Part of the margin, in m, by which the true trajectory may deviate from `path`, because forces vary. 0: the path
+    /// is known.
+    double deviation = 0.0;
 };
 
 /// Result of a look-ahead. Times are in s along the look-ahead's path.

@@ -200,8 +200,9 @@ Flight resume_flight(const Integrator& integrator, const ForceField& forces, con
 
 // Steps that apply the kick before the drift end on a parabola whose start velocity contains an extra half kick. Steps
 // that apply the kick after the drift end on a parabola whose start velocity lacks half a kick.
-Path look_ahead_path(const Integrator& integrator, const Flight& flight, double time_step, double duration) {
-    const Vec3& a = flight.acceleration;
+Path look_ahead_path(const Integrator& integrator, const Flight& flight, const Vec3& acceleration, double time_step,
+                     double duration) {
+    const Vec3& a = acceleration;
     const double h = flight.path.duration;
     const double kicks = kicks_first(integrator.kind)                       ? 0.5
                          : integrator.kind == IntegratorKind::forward_euler ? -0.5

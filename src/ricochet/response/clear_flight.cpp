@@ -1,5 +1,6 @@
 #include "ricochet/response/clear_flight.h"
 
+#include "ricochet/response/flight_forecast.h"
 #include "ricochet/response/impact_resolver.h"
 #include "ricochet/response/motion_log.h"
 
@@ -21,19 +22,20 @@ constexpr double kSearchedSteps = 40.0;
 /// cost.
 constexpr double kStepsBetweenSearches = 6.0;
 
-/// Returns the room beside the triangles, in m, if it exceeds the estimated length of a step, in m; otherwise 0.
-/// Searches for free space if the known one is used up.
-double room_for(const CollisionWorld& world, MovingParticle& particle, double step) {
-    const Vec3& position = particle.state.position;
-    const double radius = particle.state.radius;
-    double room = room_beside_triangles(world, position, radius, particle.clear);
-    if (room > step) return room;
-    ClearBall& clear = particle.clear;
-    const bool is_searched = clear.radius > 0.0 && length(position - clear.center) < kStepsBetweenSearches * step;
-    if (is_searched) return 0.0;
-    clear = find_clear_ball(world, position, radius, kSearchedSteps * step);
-    room = room_beside_triangles(world, position, radius, clear);
-    return room > step ? room : 0.0;
+/// Searches for free space if the known one is used up, unless the contact query of this step will find it. Returns
+/// true if the search has found another space.
+bool search_space(const ResponseRules& rules, MovingParticle& particle, const Flight& flight, double duration) {
+    const ForceInput& state = particle.state;
+    ClearSpace& clear = particle.clear;
+    const double step = duration * length(state.velocity);
+    if (clear.is_known() && clear.is_at_rest() &&
+        length(state.position - clear.center) < kStepsBetweenSearches * step) {
+        return false;
+    }
+    const bool has_left_forecast = !clear.is_at_rest() && state.time + duration <= clear.end;
+    if (!has_left_forecast && look_ahead_of(rules, particle, flight, duration)) return false;
+    clear = find_clear_ball(rules.world, state.position, state.radius, kSearchedSteps * step);
+    return true;
 }
 
 /// Records the flight in the lists that the caller has asked for. before: the particle at the start.
@@ -55,19 +57,23 @@ void record(const ResponseRules& rules, const MovingParticle& before, const Movi
 
 }  // namespace
 
+bool flies_clear(const ClearSpace& space, const ForceInput& state, const Flight& flight, double duration) {
+    return flight.path.duration == duration && can_be_followed(flight.path) &&
+           space.contains(flight.path, state.time, state.radius);
+}
+
 std::optional<MoveOutcome> fly_clear(const ResponseRules& rules, MovingParticle& particle, double duration,
                                      MoveScratch& scratch, std::optional<Flight>& flight) {
     if (!may_fly_clear(rules, particle)) return std::nullopt;
-    ForceInput& state = particle.state;
-    const double room = room_for(rules.world, particle, duration * length(state.velocity));
-    if (!(room > 0.0)) return std::nullopt;
     flight = first_flight(rules, particle, duration);
-    const Path& path = flight->path;
-    if (path.duration != duration || !can_be_followed(path)) return std::nullopt;
-    if (!is_path_clear(rules.world, path, state.radius, room)) return std::nullopt;
+    if (!flies_clear(particle.clear, particle.state, *flight, duration)) {
+        const bool has_found = search_space(rules, particle, *flight, duration);
+        if (!has_found || !flies_clear(particle.clear, particle.state, *flight, duration)) return std::nullopt;
+    }
     const bool is_recorded = scratch.record_segments || scratch.record_flown || scratch.record_motions;
     const std::optional<MovingParticle> before = is_recorded ? std::optional(particle) : std::nullopt;
-    state.position = path.end;
+    ForceInput& state = particle.state;
+    state.position = flight->path.end;
     state.velocity = flight->end_velocity;
     state.time += duration;
     if (before) record(rules, *before, particle, *flight, scratch);

@@ -6,6 +6,7 @@
 #include "ricochet/response/carried_particle.h"
 #include "ricochet/response/clear_flight.h"
 #include "ricochet/response/exact.h"
+#include "ricochet/response/flight_forecast.h"
 #include "ricochet/response/path_motion.h"
 #include "ricochet/response/supported_acceleration.h"
 
@@ -16,10 +17,6 @@ namespace {
 /// a look-ahead always finds a surface. Without the limit the narrow cavity of `ricochet bench --suite pinball` took 6
 /// to 9 % longer (docs/decisions/2026-11-23-what-pays.md). Local: it affects only the cost.
 constexpr std::uint32_t kBouncesInNarrowGap = 2;
-/// Largest duration of a step, in time steps of the run. It exceeds 1 because of the rounding of the clock. Local: only
-/// look-ahead depends on it.
-constexpr double kWholeStep = 1.0 + 1e-9;
-
 /// Shortens a flight to a duration, in s, along its path.
 void cut(Flight& flight, double duration, const Integrator& integrator, const ForceField& forces) {
     if (flight.path.duration <= duration) return;
@@ -36,32 +33,19 @@ double planned_duration(const ParticleStep& step, bool is_first) {
     return is_planned ? particle.planned->path.duration : step.remaining() + particle.beyond;
 }
 
-/// Returns the look-ahead of the last flight of a step, as far as its path is known. A path is known only under uniform
-/// acceleration and in steps of the run's length.
+/// Returns the look-ahead of the last flight of a step; nothing if it is not worth its cost.
 std::optional<LookAhead> look_ahead_of(const ParticleStep& step, const Flight& flight) {
-    const ResponseRules& rules = step.rules();
-    const MovingParticle& particle = step.particle();
-    const ForceInput& state = particle.state;
-    const double remaining = step.remaining();
-    const double time_step = rules.settings.time_step;
-    const bool is_known = rules.look_ahead && step.outcome().meetings() < kBouncesInNarrowGap &&
-                          rules.forces.is_uniform() && particle.planned == nullptr && particle.beyond == 0.0 &&
-                          state.coupling == nullptr && flight.path.duration == remaining &&
-                          remaining <= kWholeStep * time_step;
-    if (!is_known) return std::nullopt;
-    const double acceleration = length(flight.acceleration);
-    const int steps = acceleration == 0.0 ? kMaxLookAheadSteps : kMaxLookAheadStepsCurved;
-    const double left = rules.end - (state.time + remaining);  // of the run, after this step
-    if (left < 0.5 * time_step) return std::nullopt;
-    const double duration = remaining + std::min(steps * time_step, left + time_step);
-    LookAhead look_ahead{look_ahead_path(rules.settings.integrator, flight, time_step, duration), 0.0,
-                         remaining + time_step, kWholeStep * time_step};
-    const double speed = length(flight.end_velocity) + acceleration * duration;
-    const double largest = max_abs(flight.path.end) + speed * duration + state.radius;
-    if (!(largest < kLargestCoordinate) || !(speed < kMaxSpeed)) return std::nullopt;
-    const double clocks = 4.0 * ulp(state.time + duration) * speed;  // the clock's times are rounded
-    look_ahead.margin = kLookAheadSlack * largest + 0.125 * time_step * time_step * acceleration + clocks;
-    return look_ahead;
+    if (step.outcome().meetings() >= kBouncesInNarrowGap) return std::nullopt;
+    return look_ahead_of(step.rules(), step.particle(), flight, step.remaining());
+}
+
+/// Keeps the free space along a forecast of a step that began at a time, in s. A forecast does not replace later steps.
+void keep_forecast(const LookAhead& forecast, double begin, MovingParticle& particle, MoveOutcome& outcome) {
+    if (outcome.free_for > 0.0) {
+        particle.clear =
+            space_along(forecast, begin, particle.state.time - begin + outcome.free_for, particle.state.radius);
+    }
+    outcome.free_for = outcome.candidates_for = 0.0;
 }
 
 }  // namespace
@@ -126,10 +110,12 @@ std::optional<Contact> ParticleMover::advance_flight(Flight& flight, bool is_fir
                                 : resume_flight(integrator, rules_.forces, particle_.state, flight, remaining);
     if (particle_.beyond > 0.0) cut(flight, step_.remaining(), integrator, rules_.forces);
     const auto look_ahead = look_ahead_of(step_, flight);
+    const double begin = particle_.state.time;
     step_.log().note_impact();
     const auto contact = follow_flight(step_, flight, integrator, look_ahead ? &*look_ahead : nullptr,
                                        is_first ? particle_.candidates : ContactCandidates{});
     step_.log().note_flight();
+    if (look_ahead && look_ahead->deviation > 0.0) keep_forecast(*look_ahead, begin, particle_, step_.outcome());
     step_.outcome().is_coarse |= flight.is_coarse;
     if (flight.has_spent_substeps() && !contact) give_up(step_);
     return contact;

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "ricochet/collision/clear_path.h"
+#include "ricochet/collision/clear_space.h"
 #include "ricochet/collision/contact_query.h"
 #include "ricochet/collision/moving_colliders.h"
 #include "ricochet/core/motion_part.h"
@@ -127,7 +127,7 @@ struct MovingParticle {
     /// Flight of the whole step, if particles act on each other and are stepped together. Null: the particle's own
     /// integrator computes it. It must outlive the move.
     const Flight* planned = nullptr;
-    ClearBall clear = {};               ///< free space that an earlier step has found, or this one
+    ClearSpace clear = {};              ///< free space that an earlier step has found, or this one
     ContactCandidates candidates = {};  ///< candidates in this step, from MoveOutcome::candidates of the last step
 
     // Used only if colliders move.

@@ -1,6 +1,9 @@
 #include "ricochet/simulation/free_flights.h"
 
 #include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/response/clear_flight.h"
+#include "ricochet/simulation/cloud_motion.h"
 
 namespace ricochet {
 namespace {
@@ -12,21 +15,24 @@ constexpr std::size_t kPrefetchDistance = 6;
 
 ActiveSet FreeFlights::advance(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
     if (deferred_ && deferred_->is_full()) catch_up_all();
-    const std::optional<Vec3>& common = forces_.common_acceleration();
-    const FreeFlight shared(integrator_, common.value_or(Vec3{}), step.end - step.begin);
+    const std::optional<Vec3>& common = rules_.forces.common_acceleration();
+    const FreeFlight shared(rules_.settings.integrator, common.value_or(Vec3{}), step.end - step.begin);
     std::vector<std::size_t> sizes(blocks_of(range.size()));
     const bool records = observers_.check != nullptr || observers_.passages != nullptr;
     if (records) blocks.resize(std::max(blocks.size(), sizes.size()));
     parallel_for_blocks(range.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         begin += range.begin;
         end += range.begin;
-        sizes[block] = schedule_.count_active(begin, end);
-        if (deferred_) return;
-        if (common && !records) {
+        BlockRecord* const record = records ? &blocks[block] : nullptr;
+        if (deferred_) {
+            // They are advanced later.
+        } else if (common && !records) {
             advance_together(begin, end, shared);
         } else {
-            advance_each(begin, end, step, records ? &blocks[block] : nullptr);
+            advance_each(begin, end, step, record);
         }
+        if (schedule_.keeps_clear_spaces()) fly_in_clear_spaces(begin, end, step, record);
+        sizes[block] = schedule_.count_active(begin, end);
     });
     ActiveSet active(std::move(sizes));
     parallel_for_blocks(range.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
@@ -52,23 +58,66 @@ void FreeFlights::advance_together(std::size_t begin, std::size_t end, const Fre
 
 void FreeFlights::advance_each(std::size_t begin, std::size_t stop, const TimeSpan& step, BlockRecord* record) {
     Particles& particles = store_.particles();
-    const std::optional<Vec3>& common = forces_.common_acceleration();
+    const std::optional<Vec3>& common = rules_.forces.common_acceleration();
     for (std::size_t i = begin; i < stop; ++i) {
         if (!schedule_.is_in_free_flight(i)) continue;
-        const FreeFlight flight(integrator_, common ? *common : forces_.acceleration(store_.force_input(i, step.begin)),
+        const FreeFlight flight(rules_.settings.integrator,
+                                common ? *common : rules_.forces.acceleration(store_.force_input(i, step.begin)),
                                 step.end - step.begin);
         const PhaseState end = flight.step(particles.position[i], particles.velocity[i]);
-        if (observers_.check != nullptr) {
-            const Segment segment{particles.position[i], end.position, step.begin};
-            ForceInput moved = store_.force_input(i, step.end);
-            moved.position = end.position;
-            moved.velocity = end.velocity;
-            observers_.check->check(i, particles, moved, {step.end, step.end}, {&segment, 1}, record->violations);
-        }
+        if (observers_.check != nullptr) note_motion(i, end, step, *record);
         if (observers_.passages != nullptr) note_passages(i, end, flight.duration(), *record);
         particles.position[i] = end.position;
         particles.velocity[i] = end.velocity;
     }
+}
+
+/// Moves active particles whose whole step certainly stays in their free space. The result has the same bits as a
+/// contact query. These particles then count as particles in free flight.
+void FreeFlights::fly_in_clear_spaces(std::size_t begin, std::size_t stop, const TimeSpan& step, BlockRecord* record) {
+    Particles& particles = store_.particles();
+    for (std::size_t i = begin; i < stop; ++i) {
+        if (!schedule_.may_fly_clear(i)) continue;
+        rules_.poll();
+        const std::optional<Flight> flight = clear_flight(i, step);
+        if (!flight) continue;
+        const PhaseState end{flight->path.end, flight->end_velocity};
+        if (observers_.check != nullptr) note_motion(i, end, step, *record);
+        if (observers_.passages != nullptr) {
+            const double duration = flight->path.duration;
+            const double start = (step.begin + duration) - duration;  // computed like the beginning of a queried flight
+            note_passages(i, {flight->path, start, duration, particles.velocity[i], end.velocity, true}, *record);
+        }
+        particles.position[i] = end.position;
+        particles.velocity[i] = end.velocity;
+        schedule_.fly_this_step(i);
+    }
+}
+
+/// Returns the flight of a particle over a step, if it stays in free space, and if the mover has nothing to report.
+std::optional<Flight> FreeFlights::clear_flight(std::size_t i, const TimeSpan& step) const {
+    const Particles& particles = store_.particles();
+    const ClearSpace& clear = schedule_.clear(i);
+    const bool lives =
+        particles.birth_time[i] <= step.begin && particles.birth_time[i] + particles.lifetime[i] > step.end;
+    if (!lives || step.end > clear.end) return std::nullopt;
+    if (observers_.clouds != nullptr && observers_.clouds->has_parent(i)) return std::nullopt;
+    const double duration = step.end - step.begin;
+    const ForceInput state = store_.force_input(i, step.begin);
+    const Flight flight = begin_flight(rules_.settings.integrator, rules_.forces, state, duration);
+    if (flight.is_coarse || !flies_clear(clear, state, flight, duration)) return std::nullopt;
+    if (length_squared(flight.end_velocity) > kMaxSpeed * kMaxSpeed) return std::nullopt;
+    return flight;
+}
+
+/// Lets the verifier check a flight that is not stored yet. end: state at its end.
+void FreeFlights::note_motion(std::size_t i, const PhaseState& end, const TimeSpan& step, BlockRecord& record) const {
+    const Particles& particles = store_.particles();
+    ForceInput moved = store_.force_input(i, step.end);
+    moved.position = end.position;
+    moved.velocity = end.velocity;
+    const Segment segment{particles.position[i], end.position, step.begin};
+    observers_.check->check(i, particles, moved, {step.end, step.end}, {&segment, 1}, record.violations);
 }
 
 /// Records a particle's passages through counters in a flight that is not stored yet. end: state at its end.
@@ -78,15 +127,21 @@ void FreeFlights::note_passages(std::size_t i, const PhaseState& end, double dur
     const Vec3& velocity = particles.velocity[i];
     // The distance of a parabola from its chord is at most its duration times its velocity change, divided by 8.
     if (!observers_.passages->may_pass(from, end.position, duration * length(end.velocity - velocity) / 8.0)) return;
-    const bool is_line = kicks_first(integrator_.kind) || integrator_.kind == IntegratorKind::forward_euler;
+    const bool is_line = kicks_first(rules_.settings.integrator.kind) ||
+                         rules_.settings.integrator.kind == IntegratorKind::forward_euler;
     const Path path = is_line ? line_path(from, (end.position - from) / duration, duration)
                               : hermite_path(from, velocity, end.position, end.velocity, duration);
-    const FlownPiece piece{path, 0.0, duration, velocity, end.velocity, true};
-    observers_.passages->trace({particles.id[i], particles.mass[i], from, end.position}, {&piece, 1}, record.passages);
+    note_passages(i, {path, 0.0, duration, velocity, end.velocity, true}, record);
+}
+
+void FreeFlights::note_passages(std::size_t i, const FlownPiece& piece, BlockRecord& record) const {
+    const Particles& particles = store_.particles();
+    observers_.passages->trace({particles.id[i], particles.mass[i], particles.position[i], piece.path.end}, {&piece, 1},
+                               record.passages);
 }
 
 void FreeFlights::begin_deferring() {
-    if (!deferred_ && forces_.common_acceleration()) deferred_.emplace(store_.size());
+    if (!deferred_ && rules_.forces.common_acceleration()) deferred_.emplace(store_.size());
 }
 
 void FreeFlights::end_deferring() {

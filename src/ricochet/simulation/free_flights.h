@@ -89,9 +89,9 @@ private:
 class FreeFlights {
 public:
     /// All arguments must outlive the object.
-    FreeFlights(ParticleStore& store, const QuerySchedule& schedule, const ForceField& forces,
-                const Integrator& integrator, const MoveObservers& observers)
-        : store_(store), schedule_(schedule), forces_(forces), integrator_(integrator), observers_(observers) {}
+    FreeFlights(ParticleStore& store, QuerySchedule& schedule, const ResponseRules& rules,
+                const MoveObservers& observers)
+        : store_(store), schedule_(schedule), rules_(rules), observers_(observers) {}
 
     /// Advances the free flights of the range. Returns the particles that need a query, ascending, in blocks of the
     /// range.
@@ -125,15 +125,18 @@ public:
 private:
     void advance_together(std::size_t begin, std::size_t end, const FreeFlight& flight);
     void advance_each(std::size_t begin, std::size_t end, const TimeSpan& step, BlockRecord* record);
+    void fly_in_clear_spaces(std::size_t begin, std::size_t end, const TimeSpan& step, BlockRecord* record);
+    [[nodiscard]] std::optional<Flight> clear_flight(std::size_t i, const TimeSpan& step) const;
+    void note_motion(std::size_t i, const PhaseState& end, const TimeSpan& step, BlockRecord& record) const;
     void note_passages(std::size_t i, const PhaseState& end, double duration, BlockRecord& record) const;
+    void note_passages(std::size_t i, const FlownPiece& piece, BlockRecord& record) const;
     void catch_up(std::size_t i);
     void catch_up_active(std::span<const std::uint32_t> active);
     void catch_up_all();
 
     ParticleStore& store_;
-    const QuerySchedule& schedule_;
-    const ForceField& forces_;
-    Integrator integrator_;
+    QuerySchedule& schedule_;
+    const ResponseRules& rules_;
     const MoveObservers& observers_;
     std::optional<DeferredSteps> deferred_;
 };

@@ -17,7 +17,7 @@ constexpr double kParticle = 380.0;           // a particle in the arrays, in tw
 constexpr double kAttributeComponent = 32.0;  // a component of an attribute, stored like the particle
 constexpr double kChildLists = 400.0;         // with children, per particle: its origin, and the lists of its children
 constexpr double kCloudParticle = 300.0;      // with clouds, per particle: its parent, and the path of a parent
-constexpr double kClearBall = 32.0;           // per particle under varying forces: the free space around it
+constexpr double kClearSpace = 96.0;          // per particle under varying forces: the free space around it
 constexpr double kSide = 16.0;                // per particle and collider: state of penalty and similar responses
 constexpr double kVerifiedParticle = 90.0;    // a particle with options.verify
 constexpr double kCollidingSphere = 1500.0;   // per colliding sphere: boxes, pairs, islands and contacts, by counting
@@ -208,7 +208,7 @@ double bytes_per_particle(const SimulationSetup& setup) {
     if (setup.options.verify) bytes += kVerifiedParticle;
     if (setup.options.particle_contacts) bytes += kCollidingSphere;
     const auto varies = [](const std::unique_ptr<Force>& force) { return force && !force->is_uniform(); };
-    if (std::ranges::any_of(setup.forces, varies)) bytes += kClearBall;
+    if (std::ranges::any_of(setup.forces, varies)) bytes += kClearSpace;
     if (!setup.particles_forces.empty()) bytes += kCoupledParticle;
     if (setup.options.response != ResponseKind::exact) bytes += kSide * static_cast<double>(setup.colliders.size());
     return bytes;

@@ -24,7 +24,7 @@ bool finds_contacts(const SimulationOptions& options, const Response& response) 
 }
 
 /// Returns true if particles look for free space around them (clear_flight.h).
-bool keeps_clear_balls(const PopulationParts& parts) {
+bool keeps_clear_spaces(const PopulationParts& parts) {
     const ResponseRules& rules = parts.response.rules();
     return parts.options.response == ResponseKind::exact && !parts.options.flow && rules.bodies.empty() &&
            !rules.world.triangles().empty() && !rules.forces.is_uniform();
@@ -81,8 +81,8 @@ struct Population::Arrival {
 Population::Population(ParticleStore store, const AccelerationSwitches& acceleration, double particle_bytes,
                        const PopulationParts& parts)
     : store_(std::move(store)),
-      schedule_(parts.clock, keeps_clear_balls(parts)),
-      flights_(store_, schedule_, parts.response.rules().forces, parts.options.integrator, parts.modules.observers()),
+      schedule_(parts.clock, keeps_clear_spaces(parts)),
+      flights_(store_, schedule_, parts.response.rules(), parts.modules.observers()),
       acceleration_(acceleration),
       memory_(particle_bytes),
       parts_(parts) {
@@ -206,7 +206,7 @@ void Population::wake(std::size_t i) {
 }
 
 void Population::forget_queries() {
-    schedule_.reset(size(), keeps_clear_balls(parts_));
+    schedule_.reset(size(), keeps_clear_spaces(parts_));
     for (std::size_t i = 0; i < size(); ++i) {
         if (store_.is_fixed(i) || store_.is_asleep(i)) schedule_.leave_alone(i);
     }

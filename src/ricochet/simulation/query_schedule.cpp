@@ -28,41 +28,41 @@ ContactCandidates QuerySchedule::candidates_for(std::uint32_t next, const FreeFl
 void QuerySchedule::append(bool is_left_alone) {
     next_.push_back(is_left_alone ? kLeftAlone : kUnknown);
     candidates_.emplace_back();
-    if (keeps_clear_balls_) clear_.emplace_back();
+    if (keeps_clear_spaces_) clear_.emplace_back();
 }
 
 void QuerySchedule::reserve(std::size_t more) {
     grow_capacity_by(next_, more);
     grow_capacity_by(candidates_, more);
-    if (keeps_clear_balls_) grow_capacity_by(clear_, more);
+    if (keeps_clear_spaces_) grow_capacity_by(clear_, more);
 }
 
 void QuerySchedule::compact(const std::vector<std::uint8_t>& keep) {
     keep_marked(next_, keep);
     keep_marked(candidates_, keep);
-    if (keeps_clear_balls_) keep_marked(clear_, keep);
+    if (keeps_clear_spaces_) keep_marked(clear_, keep);
 }
 
 void QuerySchedule::rearrange(const std::vector<std::size_t>& from) {
     std::vector<std::uint32_t> next(from.size(), kUnknown);
     std::vector<ContactCandidates> candidates(from.size());
-    std::vector<ClearBall> clear(keeps_clear_balls_ ? from.size() : 0);
+    std::vector<ClearSpace> clear(keeps_clear_spaces_ ? from.size() : 0);
     for (std::size_t i = 0; i < from.size(); ++i) {
         if (from[i] == kNew) continue;
         next[i] = next_[from[i]];
         candidates[i] = candidates_[from[i]];
-        if (keeps_clear_balls_) clear[i] = clear_[from[i]];
+        if (keeps_clear_spaces_) clear[i] = clear_[from[i]];
     }
     next_ = std::move(next);
     candidates_ = std::move(candidates);
     clear_ = std::move(clear);
 }
 
-void QuerySchedule::reset(std::size_t count, bool keeps_clear_balls) {
-    keeps_clear_balls_ = keeps_clear_balls;
+void QuerySchedule::reset(std::size_t count, bool keeps_clear_spaces) {
+    keeps_clear_spaces_ = keeps_clear_spaces;
     next_.assign(count, kUnknown);
     candidates_.assign(count, ContactCandidates{});
-    clear_.assign(keeps_clear_balls_ ? count : 0, ClearBall{});
+    clear_.assign(keeps_clear_spaces_ ? count : 0, ClearSpace{});
 }
 
 }  // namespace ricochet

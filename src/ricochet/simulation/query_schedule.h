@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "ricochet/collision/clear_path.h"
+#include "ricochet/collision/clear_space.h"
 #include "ricochet/collision/contact.h"
 #include "ricochet/core/algorithms.h"
 #include "ricochet/core/tolerances.h"
@@ -60,7 +60,7 @@ private:
 struct FreeFlightForecast {
     double free_until = 0.0;            ///< s, the particle certainly hits nothing before; not known if in the past
     double candidates_until = 0.0;      ///< s, only the candidates come near the particle's path before
-    ClearBall clear = {};               ///< free space around the particle, if it is known
+    ClearSpace clear = {};              ///< free space around the particle, if it is known
     ContactCandidates candidates = {};  ///< valid only if candidates_until is in the future
 };
 
@@ -72,9 +72,9 @@ struct FreeFlightForecast {
 /// only the speed of a run. If the state of every particle were unknown, results would be bitwise the same.
 class QuerySchedule {
 public:
-    /// clock must outlive the object. keeps_clear_balls: clear() returns balls, which uniform forces do not need.
-    explicit QuerySchedule(const StepClock& clock, bool keeps_clear_balls = false)
-        : clock_(clock), keeps_clear_balls_(keeps_clear_balls) {}
+    /// clock must outlive the object. keeps_clear_spaces: clear() returns balls, which uniform forces do not need.
+    explicit QuerySchedule(const StepClock& clock, bool keeps_clear_spaces = false)
+        : clock_(clock), keeps_clear_spaces_(keeps_clear_spaces) {}
 
     /// Begins a step. The functions below then return the states of particles in this step.
     void begin_step(std::uint64_t step);
@@ -87,8 +87,12 @@ public:
     }
     /// Returns the triangles that come near the path in the next query, if they are known.
     [[nodiscard]] const ContactCandidates& candidates(std::size_t i) const { return candidates_[i]; }
-    /// Returns the free space that an earlier query has found around the particle; radius 0 if none is known.
-    [[nodiscard]] ClearBall clear(std::size_t i) const { return keeps_clear_balls_ ? clear_[i] : ClearBall{}; }
+    /// Returns the free space that an earlier query has found around the particle; reach 0 if none is known.
+    [[nodiscard]] const ClearSpace& clear(std::size_t i) const {
+        static constexpr ClearSpace kNone{};
+        return keeps_clear_spaces_ ? clear_[i] : kNone;
+    }
+    [[nodiscard]] bool keeps_clear_spaces() const { return keeps_clear_spaces_; }
 
     /// Returns the number of particles of [begin, end) that need a query.
     [[nodiscard]] std::size_t count_active(std::size_t begin, std::size_t end) const {
@@ -101,6 +105,10 @@ public:
         std::size_t count = 0;
         for (std::size_t i = begin; i < end; ++i) count += is_left_alone(i) ? 1 : 0;
         return count;
+    }
+    /// Returns true for an active particle without contact around which free space is known.
+    [[nodiscard]] bool may_fly_clear(std::size_t i) const {
+        return keeps_clear_spaces_ && is_active(next_[i], now_) && next_[i] != kUnknown && clear_[i].reach > 0.0;
     }
     /// Calls visit(i) for the particles of [begin, end) that need a query, in ascending order.
     template <class Visit>
@@ -119,8 +127,10 @@ public:
 
     /// These functions set a particle's state after its move, on any thread for different particles.
     void leave_alone(std::size_t i) { set(i, kLeftAlone, {}, {}); }
-    void forget(std::size_t i, const ClearBall& clear = {}) { set(i, kUnknown, {}, clear); }
+    void forget(std::size_t i, const ClearSpace& clear = {}) { set(i, kUnknown, {}, clear); }
     void set_flying(std::size_t i, const FreeFlightForecast& forecast);
+    /// Puts an active particle without contact in free flight in this step alone. Keeps its free space.
+    void fly_this_step(std::size_t i) { next_[i] = now_ + 1; }
 
     /// Adds a particle that is unknown or left alone.
     void append(bool is_left_alone);
@@ -131,14 +141,14 @@ public:
     static constexpr std::size_t kNew = std::numeric_limits<std::size_t>::max();
     /// Rearranges the particles. Particle i had the index from[i] before, or is a new particle of unknown state.
     void rearrange(const std::vector<std::size_t>& from);
-    /// Restarts with `count` particles of unknown state. keeps_clear_balls: clear() returns the balls of forecasts.
-    void reset(std::size_t count, bool keeps_clear_balls);
+    /// Restarts with `count` particles of unknown state. keeps_clear_spaces: clear() returns the balls of forecasts.
+    void reset(std::size_t count, bool keeps_clear_spaces);
 
     /// Prefetches the data of a particle.
     void prefetch(std::size_t i) const {
         __builtin_prefetch(&next_[i], 1);
         __builtin_prefetch(&candidates_[i], 1);
-        if (keeps_clear_balls_) __builtin_prefetch(&clear_[i], 1);
+        if (keeps_clear_spaces_) __builtin_prefetch(&clear_[i], 1);
     }
 
 private:
@@ -151,10 +161,10 @@ private:
 
     [[nodiscard]] static bool is_active(std::uint32_t next, std::uint32_t now) { return next <= now; }
     [[nodiscard]] static bool is_free(std::uint32_t next, std::uint32_t now) { return next + 1U > now + 1U; }
-    void set(std::size_t i, std::uint32_t next, const ContactCandidates& candidates, const ClearBall& clear) {
+    void set(std::size_t i, std::uint32_t next, const ContactCandidates& candidates, const ClearSpace& clear) {
         next_[i] = next;
         candidates_[i] = candidates;
-        if (keeps_clear_balls_) clear_[i] = clear;
+        if (keeps_clear_spaces_) clear_[i] = clear;
     }
     [[nodiscard]] ContactCandidates candidates_for(std::uint32_t next, const FreeFlightForecast& forecast) const;
 
@@ -163,8 +173,8 @@ private:
     std::uint32_t now_ = 1;  ///< one more than step_, limited to the range of numbers; real runs do not reach the limit
     std::vector<std::uint32_t> next_;
     std::vector<ContactCandidates> candidates_;
-    bool keeps_clear_balls_;
-    std::vector<ClearBall> clear_;  ///< one per particle if they are kept
+    bool keeps_clear_spaces_;
+    std::vector<ClearSpace> clear_;  ///< one per particle if they are kept
 };
 
 }  // namespace ricochet

@@ -1,0 +1,24 @@
+/// \file
+/// The path that a particle is expected to take after a step, for the look-ahead of its contact query.
+#pragma once
+
+#include <optional>
+
+#include "ricochet/collision/look_ahead.h"
+#include "ricochet/response/response.h"
+
+namespace ricochet {
+
+/// Returns the look-ahead of the last flight of a step, as far as its path can be forecast; nothing if it cannot.
+/// remaining: rest of the step, in s.
+///
+/// Under uniform forces the path is known. Under forces that vary, the forecast is a parabola, and LookAhead::deviation
+/// is not 0. Each later step must then show that it stays within this deviation (ClearSpace).
+[[nodiscard]] std::optional<LookAhead> look_ahead_of(const ResponseRules& rules, const MovingParticle& particle,
+                                                     const Flight& flight, double remaining);
+
+/// Returns the free space along a forecast that begins at a time, in s. free_until: end of the free time, in s along
+/// the path. radius: of the particle for which the forecast was made, in m.
+[[nodiscard]] ClearSpace space_along(const LookAhead& forecast, double begin, double free_until, double radius);
+
+}  // namespace ricochet

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -161,6 +162,21 @@ TEST(ClearSpace, LeavesAParticleThatHasGrownLessRoom) {
     EXPECT_TRUE(space.contains(beside, 0.0, 0.19));
     EXPECT_FALSE(space.contains(beside, 0.0, 0.21));
     EXPECT_FALSE(space.contains(expected, 0.0, 0.3));
+}
+
+TEST(ClearSpace, ContainsNoPathWithANumberThatIsNotFinite) {
+    const Path expected = parabola_path({}, {1, 0, 0}, {}, 1.0);
+    const ClearSpace space = space_along(expected, 0.0, 1.0, 0.3);
+    for (std::size_t k = 0; k < expected.c.size(); ++k) {
+        Path path = expected;
+        path.c[k].y = std::numeric_limits<double>::quiet_NaN();
+        EXPECT_FALSE(space.contains(path, 0.0, 0.0)) << k;
+    }
+}
+
+TEST(ClearSpace, ContainsNoPathThatBeginsBeforeIt) {
+    const Path expected = parabola_path({1, 2, 3}, {1, 0, 0}, {0, 0, -1}, 1.0);
+    EXPECT_FALSE(space_along(expected, 2.0, 4.0, 10.0).contains(expected, 1.9, 0.0));
 }
 
 TEST(ClearSpace, ContainsNoPathThatEndsAfterIt) {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "collision/worlds.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/dynamics/flows.h"
@@ -22,6 +23,8 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
+using testing::floor_mesh;
+using testing::mesh_collider;
 using testing::particle_of;
 using testing::setup_of;
 
@@ -178,6 +181,25 @@ TEST(NotFiniteForces, NonFiniteCommonForceIsRefusedAtTheStart) {
     SimulationSetup setup = setup_of(0.01, 1.0);
     setup.forces.push_back(std::make_unique<Common>());
     EXPECT_THROW(Simulation simulation(std::move(setup)), InputError);
+}
+
+// The path of a step may end below the floor that the particle hits. This method evaluates forces at positions of the
+// particle alone.
+TEST(NotFiniteForces, ForceThatIsUndefinedBehindASurfaceIsNoError) {
+    const auto run = [](bool look_ahead) {
+        SimulationSetup setup = setup_of(0.05, 3.0, {.name = "floor", .restitution = 0.9}, {0, 0, -9.81});
+        setup.acceleration.look_ahead = look_ahead;
+        setup.forces.push_back(make_acceleration([](const ForceInput& input) {
+            return Vec3{0, 0, -std::sqrt(input.position.z)};
+        }));
+        setup.colliders = {mesh_collider(floor_mesh(50.0, 20))};
+        for (int i = 0; i < 40; ++i) setup.particles.push_back(particle_of({0, 0, 0.1 + 0.07 * i}, {0.1 * i, 0, 0}));
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) simulation.step();
+        EXPECT_GT(simulation.statistics().contacts, 100U);
+        return simulation.state_hash();
+    };
+    EXPECT_EQ(run(true), run(false));
 }
 
 // Trial states of a method do not count: the force of a spring that far out exceeds the range of doubles.

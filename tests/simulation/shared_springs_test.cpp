@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "collision/worlds.h"
 #include "ricochet/core/error.h"
 #include "ricochet/simulation.h"
 #include "simulation/shared_outcome.h"
@@ -44,9 +45,19 @@ SimulationSetup joined_setup(IntegratorKind kind) {
     return setup;
 }
 
+/// The same above a mesh and under drag. Particles without springs then fly in free spaces. Ranks without springs make
+/// the substeps of the first rank.
+SimulationSetup dragged_setup() {
+    SimulationSetup setup = joined_setup(IntegratorKind::dormand_prince);
+    setup.forces.push_back(make_linear_drag(0.05));
+    setup.colliders = {testing::mesh_collider(testing::floor_mesh(5.0, 10))};
+    return setup;
+}
+
 const std::vector<std::pair<const char*, SimulationSetup (*)()>> kJoined = {
     {"implicit", [] { return joined_setup(IntegratorKind::implicit_euler); }},
     {"adaptive", [] { return joined_setup(IntegratorKind::dormand_prince); }},
+    {"dragged", dragged_setup},
     {"explicit", [] { return joined_setup(IntegratorKind::velocity_verlet); }}};
 
 TEST(SharedSprings, BitsMatchOneProcess) {

@@ -60,20 +60,20 @@ double radius_without_triangles(const CollisionWorld& world, const Vec3& center,
     return (1.0 - kDistanceRounding) * free;
 }
 
-/// Returns the part of a ball's radius, in m, that planes and shapes leave. slack: distance, in m, by which they must
-/// be farther away.
-double reach_beside_planes_and_shapes(const CollisionWorld& world, const Vec3& center, double reach, double slack) {
+/// Returns the part of the room around a particle, in m, that planes and shapes leave. margin: distance from the
+/// centre, in m, beyond which the room begins.
+double room_beside_planes_and_shapes(const CollisionWorld& world, const Vec3& center, double room, double margin) {
     for (const auto& [plane, surface] : world.planes()) {
         const double distance = std::fabs(signed_distance(center, plane));
-        reach = std::min(reach, lower_bound(distance, max_abs(center - plane.point) + max_abs(center)) - slack);
+        room = std::min(room, lower_bound(distance, max_abs(center - plane.point) + max_abs(center)) - margin);
     }
     const Path here = line_path(center, Vec3{}, 1.0);
     for (const auto& shape : world.shapes()) {
-        for (int k = 0; reach > 0.0 && !shape.shape.can_cull(here, reach + slack); ++k) {
-            reach = k < kMostHalvings ? 0.5 * reach : 0.0;
+        for (int k = 0; room > 0.0 && !shape.shape.can_cull(here, room + margin); ++k) {
+            room = k < kMostHalvings ? 0.5 * room : 0.0;
         }
     }
-    return reach;
+    return room;
 }
 
 }  // namespace
@@ -82,16 +82,17 @@ bool ClearSpace::contains(const Path& path, double time, double radius) const {
     const double h = path.duration;
     const double s = time - begin;
     const double width = reach - radius;
-    if (!(width > 0.0) || !(s + h <= end - begin)) return false;
+    // The end of a query's step and the start of the next one can differ by the rounding of the clock.
+    const bool is_in_time = s >= -4.0 * ulp(time) && s + h <= end - begin;
+    if (!(width > 0.0) || !is_in_time) return false;
     const Vec3 d0 = path.c[0] - (center + s * (velocity + s * half_acceleration));
     const Vec3 d1 = path.c[1] - (velocity + (2.0 * s) * half_acceleration);
     const Vec3 d2 = path.c[2] - half_acceleration;
     const Vec3 b1 = d0 + (h / 3.0) * d1;
     const Vec3 b2 = b1 + (h / 3.0) * (d1 + h * d2);
     const Vec3 b3 = d0 + h * (d1 + h * (d2 + h * path.c[3]));
-    const double largest =
-        std::max(std::max(length_squared(d0), length_squared(b1)), std::max(length_squared(b2), length_squared(b3)));
-    return largest < width * width;
+    const auto is_within = [&](const Vec3& d) { return length_squared(d) < width * width; };  // false for NaN
+    return is_within(d0) && is_within(b1) && is_within(b2) && is_within(b3);
 }
 
 ClearSpace find_clear_ball(const CollisionWorld& world, const Vec3& center, double radius, double within) {
@@ -100,7 +101,8 @@ ClearSpace find_clear_ball(const CollisionWorld& world, const Vec3& center, doub
     // A larger particle may use the ball later: the core of a sphere in overlap can grow.
     const double slack = query_slack(max_abs(center) + kTermsOfPath * within, radius + within);
     const double free = radius_without_triangles(world, center, radius, radius + kSearchedPart * within);
-    space.reach = std::max(0.0, reach_beside_planes_and_shapes(world, center, free - slack, slack));
+    const double room = room_beside_planes_and_shapes(world, center, free - radius - slack, radius + slack);
+    if (room > 0.0) space.reach = radius + room;
     return space;
 }
 

@@ -10,8 +10,8 @@
 
 namespace ricochet {
 
-/// A ball without surfaces that moves along a parabola, or rests. A search finds a ball at rest around the particle. A
-/// look-ahead finds a ball that moves along the path that the particle is expected to take.
+/// A ball without surfaces that rests, or moves along a parabola from one time to another. A search finds a ball at
+/// rest around the particle, a look-ahead a ball along the path that the particle is expected to take after its step.
 struct ClearSpace {
     Vec3 center = {};             ///< in m, at the time `begin`
     Vec3 velocity = {};           ///< in m/s, at the time `begin`
@@ -26,17 +26,17 @@ struct ClearSpace {
     static constexpr double kUnknown = -std::numeric_limits<double>::infinity();
 
     [[nodiscard]] bool is_known() const { return begin != kUnknown; }
-    [[nodiscard]] bool is_at_rest() const { return end == kForEver; }
+    [[nodiscard]] bool is_at_rest() const { return end == kForEver; }  ///< also true if the space is not known
     /// Returns true if a particle of a radius, in m, certainly stays in the ball on a path that begins at a time, in s.
     /// It then touches no surface on the path, and none on the chord of the path. Reason: the difference of two
     /// polynomials lies in the convex hull of its Bezier control points.
     [[nodiscard]] bool contains(const Path& path, double time, double radius) const;
 };
 
-/// Returns the free space around the centre of a particle of a radius, in m. The ball rests. It leaves the particle a
-/// distance of at most `within`, in m, and of at least four fifths of the smaller of `within` and the distance to the
-/// nearest triangle, less the distance within which a contact query considers triangles. The bounds by shapes with a
-/// formula can be half as large. The centre must be finite.
+/// Returns the free space around the centre of a particle of a radius, in m. The ball rests. It leaves the particle at
+/// most the distance `within`, in m. It leaves four fifths of that, or of the distances to planes and triangles, less
+/// the distance within which a contact query considers surfaces. Beside shapes with a formula, the distance is halved
+/// until they are certainly farther away, and can become 0. The centre must be finite.
 [[nodiscard]] ClearSpace find_clear_ball(const CollisionWorld& world, const Vec3& center, double radius, double within);
 
 }  // namespace ricochet

@@ -68,10 +68,10 @@ struct Flight {
 /// the derivative of the Hermite path is less accurate by one order.
 [[nodiscard]] Vec3 velocity_at(const Integrator& integrator, const ForceField& forces, const Flight& flight, double s);
 
-/// Returns a parabola of an acceleration, in m/s^2, through the end of a flight. It begins with the flight. If the forces
-/// give this acceleration at all positions, velocities and times, and the particle hits nothing, all steps of
-/// `time_step` seconds end on the parabola, up to rounding. The distance of their paths from it is at most
-/// |acceleration| time_step^2 / 8. duration: in s, at least that of the flight.
+/// Returns a parabola of an acceleration, in m/s^2, through the end of a flight, over the flight and beyond. If the
+/// forces give this acceleration everywhere and always, and the particle hits nothing, all steps of `time_step` seconds
+/// end on the parabola, up to rounding. The distance of their paths from it is at most |acceleration| time_step^2 / 8.
+/// duration: in s, at least that of the flight.
 [[nodiscard]] Path look_ahead_path(const Integrator& integrator, const Flight& flight, const Vec3& acceleration,
                                    double time_step, double duration);
 

@@ -26,17 +26,28 @@ struct Forecast {
     double duration = 0.0;   ///< in s, after the flight: the time for which the deviation probably suffices
 };
 
+/// Returns the estimated change of the acceleration during a flight, in m/s^2. Forces are evaluated at the flight's
+/// start only, because its end can lie behind a surface, where a force need not be defined. The velocity and the time
+/// are those of its end, which the next step will use. Integrators with several evaluations show the change along the
+/// path, too.
+Vec3 change_of_acceleration(const ResponseRules& rules, const Flight& flight) {
+    ForceInput later = flight.start;
+    later.velocity = flight.end_velocity;
+    later.time += flight.path.duration;
+    const Vec3 by_motion = rules.forces.acceleration(later) - flight.acceleration;
+    if (flight.kick_duration > 0.0) return by_motion;
+    const Vec3 mean = (flight.end_velocity - flight.start.velocity) / flight.path.duration;
+    const Vec3 along_path = 2.0 * (mean - flight.acceleration);
+    return length_squared(along_path) > length_squared(by_motion) ? along_path : by_motion;
+}
+
 /// Returns the forecast under forces that vary. The acceleration at the flight's end is extrapolated. It changes at a
 /// rate j, so the trajectory leaves the parabola by about j t^3 / 6. Twice that must fit into the allowed deviation.
 Forecast forecast_of(const ResponseRules& rules, const Flight& flight, double radius) {
-    ForceInput end = flight.start;
-    end.position = flight.path.end;
-    end.velocity = flight.end_velocity;
-    end.time += flight.path.duration;
-    Forecast forecast{rules.forces.acceleration(end)};
+    const Vec3 change = change_of_acceleration(rules, flight);
+    Forecast forecast{flight.acceleration + change};
     forecast.deviation = kDeviationPart * std::max(0.0, rules.world.bvh_for(radius).margin() - radius);
-    const double rate = length(forecast.acceleration - flight.acceleration) / flight.path.duration;
-    forecast.duration = std::cbrt(3.0 * forecast.deviation / rate);
+    forecast.duration = std::cbrt(3.0 * forecast.deviation * flight.path.duration / length(change));
     return forecast;
 }
 
@@ -71,17 +82,20 @@ std::optional<LookAhead> look_ahead_of(const ResponseRules& rules, const MovingP
     const double largest = max_abs(flight.path.end) + speed * duration + state.radius + forecast.deviation;
     if (!(largest < kLargestCoordinate) || !(speed < kMaxSpeed)) return std::nullopt;
     const double clocks = 4.0 * ulp(state.time + duration) * speed;  // the clock's times are rounded
+    const double longest = (1.0 + kStepRounding) * time_step;
     look_ahead.margin =
-        kLookAheadSlack * largest + 0.125 * time_step * time_step * acceleration + clocks + forecast.deviation;
+        kLookAheadSlack * largest + 0.125 * longest * longest * acceleration + clocks + forecast.deviation;
     const bool begins_with_flight =
-        forecast.deviation == 0.0 ||
-        space_along(look_ahead, state.time, duration, state.radius).contains(flight.path, state.time, state.radius);
+        forecast.deviation == 0.0 || space_along(look_ahead, state.time, {0.0, duration}, state.radius)
+                                         .contains(flight.path, state.time, state.radius);
     return begins_with_flight ? std::optional(look_ahead) : std::nullopt;
 }
 
-ClearSpace space_along(const LookAhead& forecast, double begin, double free_until, double radius) {
-    return {forecast.path.c[0], forecast.path.c[1],         forecast.path.c[2], begin,
-            begin + free_until, radius + forecast.deviation};
+ClearSpace space_along(const LookAhead& forecast, double begin, const PartOfPath& free, double radius) {
+    const auto& c = forecast.path.c;
+    const double t = free.from;
+    return {c[0] + t * (c[1] + t * c[2]), c[1] + (2.0 * t) * c[2],    c[2], begin + t,
+            begin + free.until,           radius + forecast.deviation};
 }
 
 }  // namespace ricochet

@@ -17,8 +17,14 @@ namespace ricochet {
 [[nodiscard]] std::optional<LookAhead> look_ahead_of(const ResponseRules& rules, const MovingParticle& particle,
                                                      const Flight& flight, double remaining);
 
-/// Returns the free space along a forecast that begins at a time, in s. free_until: end of the free time, in s along
-/// the path. radius: of the particle for which the forecast was made, in m.
-[[nodiscard]] ClearSpace space_along(const LookAhead& forecast, double begin, double free_until, double radius);
+/// A part of a path, in s from its start.
+struct PartOfPath {
+    double from = 0.0;
+    double until = 0.0;
+};
+
+/// Returns the free space along a part of a forecast that begins at a time, in s. Only the query's own path is known to
+/// be free before its end. radius: of the particle for which the forecast was made, in m.
+[[nodiscard]] ClearSpace space_along(const LookAhead& forecast, double begin, const PartOfPath& free, double radius);
 
 }  // namespace ricochet

@@ -17,6 +17,7 @@ namespace {
 /// a look-ahead always finds a surface. Without the limit the narrow cavity of `ricochet bench --suite pinball` took 6
 /// to 9 % longer (docs/decisions/2026-11-23-what-pays.md). Local: it affects only the cost.
 constexpr std::uint32_t kBouncesInNarrowGap = 2;
+
 /// Shortens a flight to a duration, in s, along its path.
 void cut(Flight& flight, double duration, const Integrator& integrator, const ForceField& forces) {
     if (flight.path.duration <= duration) return;
@@ -41,9 +42,9 @@ std::optional<LookAhead> look_ahead_of(const ParticleStep& step, const Flight& f
 
 /// Keeps the free space along a forecast of a step that began at a time, in s. A forecast does not replace later steps.
 void keep_forecast(const LookAhead& forecast, double begin, MovingParticle& particle, MoveOutcome& outcome) {
+    const double flown = particle.state.time - begin;
     if (outcome.free_for > 0.0) {
-        particle.clear =
-            space_along(forecast, begin, particle.state.time - begin + outcome.free_for, particle.state.radius);
+        particle.clear = space_along(forecast, begin, {flown, flown + outcome.free_for}, particle.state.radius);
     }
     outcome.free_for = outcome.candidates_for = 0.0;
 }

@@ -19,6 +19,8 @@ ActiveSet FreeFlights::advance(const ParticleRange& range, const TimeSpan& step,
     const FreeFlight shared(rules_.settings.integrator, common.value_or(Vec3{}), step.end - step.begin);
     std::vector<std::size_t> sizes(blocks_of(range.size()));
     const bool records = observers_.check != nullptr || observers_.passages != nullptr;
+    // In a substep, the particles would count as free in the next substeps, too.
+    const bool may_fly_clear = schedule_.keeps_clear_spaces() && schedule_.is_whole_step(step);
     if (records) blocks.resize(std::max(blocks.size(), sizes.size()));
     parallel_for_blocks(range.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         begin += range.begin;
@@ -31,7 +33,7 @@ ActiveSet FreeFlights::advance(const ParticleRange& range, const TimeSpan& step,
         } else {
             advance_each(begin, end, step, record);
         }
-        if (schedule_.keeps_clear_spaces()) fly_in_clear_spaces(begin, end, step, record);
+        if (may_fly_clear) fly_in_clear_spaces(begin, end, step, record);
         sizes[block] = schedule_.count_active(begin, end);
     });
     ActiveSet active(std::move(sizes));

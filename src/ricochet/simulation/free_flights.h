@@ -93,8 +93,8 @@ public:
                 const MoveObservers& observers)
         : store_(store), schedule_(schedule), rules_(rules), observers_(observers) {}
 
-    /// Advances the free flights of the range. Returns the particles that need a query, ascending, in blocks of the
-    /// range.
+    /// Advances the free flights of the range, and the flights that stay in known free space. Returns the particles
+    /// that need a query, ascending, in blocks of the range.
     [[nodiscard]] ActiveSet advance(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks);
 
     /// Starts to defer steps. Particles in free flight then keep their stored state, and make several steps together

@@ -72,7 +72,7 @@ struct FreeFlightForecast {
 /// only the speed of a run. If the state of every particle were unknown, results would be bitwise the same.
 class QuerySchedule {
 public:
-    /// clock must outlive the object. keeps_clear_spaces: clear() returns balls, which uniform forces do not need.
+    /// clock must outlive the object. keeps_clear_spaces: clear() returns spaces, which uniform forces do not need.
     explicit QuerySchedule(const StepClock& clock, bool keeps_clear_spaces = false)
         : clock_(clock), keeps_clear_spaces_(keeps_clear_spaces) {}
 
@@ -106,9 +106,13 @@ public:
         for (std::size_t i = begin; i < end; ++i) count += is_left_alone(i) ? 1 : 0;
         return count;
     }
+    /// Returns true if an interval is the whole present step, and not a substep.
+    [[nodiscard]] bool is_whole_step(const TimeSpan& span) const {
+        return span.begin == clock_.time_at(step_) && span.end == clock_.time_at(step_ + 1);
+    }
     /// Returns true for an active particle without contact around which free space is known.
     [[nodiscard]] bool may_fly_clear(std::size_t i) const {
-        return keeps_clear_spaces_ && is_active(next_[i], now_) && next_[i] != kUnknown && clear_[i].reach > 0.0;
+        return now_ < kLeftAlone - 1 && is_active(next_[i], now_) && next_[i] != kUnknown && clear_[i].reach > 0.0;
     }
     /// Calls visit(i) for the particles of [begin, end) that need a query, in ascending order.
     template <class Visit>
@@ -129,7 +133,7 @@ public:
     void leave_alone(std::size_t i) { set(i, kLeftAlone, {}, {}); }
     void forget(std::size_t i, const ClearSpace& clear = {}) { set(i, kUnknown, {}, clear); }
     void set_flying(std::size_t i, const FreeFlightForecast& forecast);
-    /// Puts an active particle without contact in free flight in this step alone. Keeps its free space.
+    /// Puts a particle that may fly clear in free flight in this step alone. Keeps its free space.
     void fly_this_step(std::size_t i) { next_[i] = now_ + 1; }
 
     /// Adds a particle that is unknown or left alone.
@@ -141,7 +145,7 @@ public:
     static constexpr std::size_t kNew = std::numeric_limits<std::size_t>::max();
     /// Rearranges the particles. Particle i had the index from[i] before, or is a new particle of unknown state.
     void rearrange(const std::vector<std::size_t>& from);
-    /// Restarts with `count` particles of unknown state. keeps_clear_spaces: clear() returns the balls of forecasts.
+    /// Restarts with `count` particles of unknown state. keeps_clear_spaces: clear() returns known free spaces.
     void reset(std::size_t count, bool keeps_clear_spaces);
 
     /// Prefetches the data of a particle.

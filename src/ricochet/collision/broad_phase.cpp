@@ -113,7 +113,8 @@ struct PieceQuery {
 
     // The tube also covers chords of the path that covers_chord() accepts.
     void query_piece(const Piece& piece) {
-        const auto [from, to] = piece;
+        const double from = piece.from;  // clang before version 16 does not capture structured bindings
+        const double to = piece.to;
         const double span = to - from;
         const bool is_parabola = path.degree == 2;
         const double beside_piece = is_parabola ? 0.0 : path.sagitta(from, to);
@@ -162,7 +163,8 @@ struct ClearQuery {
     }
 
     void query_piece(const Piece& piece) {
-        const auto [from, to] = piece;
+        const double from = piece.from;  // clang before version 16 does not capture structured bindings
+        const double to = piece.to;
         const double span = to - from;
         const double margin = broad_phase_margin(path, margins) + path.sagitta(from, to);
         const Tube tube(path.position(from), path.position(to), margin);

@@ -55,7 +55,7 @@ AttributeTable Simulation::shown_attributes() const {
     return shown;
 }
 std::optional<std::vector<std::int64_t>> Simulation::cloud_parents() const {
-    const CloudMotion* const clouds = impl().modules.observers().clouds;
+    const CloudMotion* const clouds = impl().modules.hooks().clouds;
     return clouds != nullptr ? std::optional(clouds->parents()) : std::nullopt;
 }
 const std::vector<SpringFace>& Simulation::spring_faces() const {
@@ -86,7 +86,7 @@ std::size_t Simulation::degenerate_triangles() const { return impl().scene.degen
 
 const std::vector<ContactRecord>& Simulation::contact_records() const { return impl().recorder.contact_records(); }
 const std::vector<PairImpactRecord>& Simulation::pair_records() const { return impl().recorder.pair_records(); }
-bool Simulation::spawns_children() const { return impl().modules.observers().offspring != nullptr; }
+bool Simulation::spawns_children() const { return impl().modules.hooks().offspring != nullptr; }
 const std::vector<BirthRecord>& Simulation::birth_records() const {
     static const std::vector<BirthRecord> none;
     const ChildrenModule* const children = impl().modules.find<ChildrenModule>();

@@ -116,5 +116,48 @@ TEST(Module, DoesNothingByDefault) {
     EXPECT_FALSE(idle.allows_deferred_steps());
 }
 
+/// Counts the moves that it reads.
+class ReadingModule final : public Module {
+public:
+    explicit ReadingModule(const MoveParts& parts) : parts_(parts) {}
+
+    [[nodiscard]] MoveParts needs() const override { return parts_; }
+    void observe(const MoveReport& move, BlockRecord& block) override {
+        ++moves;
+        block.heat.push_back({move.index, move.end, 1.0});
+    }
+
+    int moves = 0;
+
+private:
+    MoveParts parts_;
+};
+
+TEST(ModuleList, ReportsMovesToModulesThatNeedParts) {
+    ModuleList modules;
+    std::vector<ReadingModule*> readers;
+    for (const MoveParts& parts : {MoveParts{}, MoveParts{.segments = true}, MoveParts{.motions = true}}) {
+        auto reader = std::make_unique<ReadingModule>(parts);
+        readers.push_back(reader.get());
+        modules.add(std::move(reader));
+    }
+    const MoveObservers& observers = modules.hooks().observers;
+    EXPECT_FALSE(observers.needs().pieces);
+    EXPECT_TRUE(observers.needs().segments);
+    EXPECT_TRUE(observers.needs().motions);
+    const Particles particles;
+    const ForceInput moved{};
+    MoveReport report{3, particles, moved};
+    report.end = 0.5;
+    BlockRecord block;
+    observers.report(report, block);
+    EXPECT_EQ(readers[0]->moves, 0);
+    EXPECT_EQ(readers[1]->moves, 1);
+    EXPECT_EQ(readers[2]->moves, 1);
+    ASSERT_EQ(block.heat.size(), 2U);
+    EXPECT_EQ(block.heat[0].particle, 3U);
+    EXPECT_EQ(block.heat[0].time, 0.5);
+}
+
 }  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -30,7 +30,7 @@ FlownPiece piece(const Path& path) { return {path, 0.0, path.duration, {}, {}, t
 std::string along(const CounterDescription& counter, const std::vector<FlownPiece>& pieces, const Vec3& from,
                   const Vec3& to) {
     std::vector<Passage> passages;
-    PassageFinder({&counter, 1}, true).trace({7, 0.5, from, to}, pieces, passages);
+    PassageFinder({&counter, 1}).trace({7, 0.5, from, to}, pieces, passages);
     for (const Passage& passage : passages) {
         EXPECT_EQ(passage.particle, 7U);
         EXPECT_EQ(passage.mass, 0.5);
@@ -116,7 +116,7 @@ TEST(Passages, SegmentsCountLikePieces) {
     const CounterDescription counter = disk(0.5);
     std::vector<Passage> passages;
     const std::vector<Segment> segments{{{0, 0, 0}, {0, 0, 1}}, {{0, 0, 1}, {0, 0, 0.25}}};
-    PassageFinder({&counter, 1}, false).trace({0, 1.0, {0, 0, 0}, {0, 0, 0.25}}, segments, passages);
+    PassageFinder({&counter, 1}).trace({0, 1.0, {0, 0, 0}, {0, 0, 0.25}}, segments, passages);
     EXPECT_EQ(letters(passages), "fb");
 }
 

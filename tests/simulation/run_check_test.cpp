@@ -1,6 +1,6 @@
 // Runs that verify themselves report no violation, in closed and open meshes, planes and shapes, for points and
 // spheres.
-#include "ricochet/simulation/run_recorder.h"
+#include "ricochet/simulation/run_check.h"
 
 #include <gtest/gtest.h>
 
@@ -190,7 +190,10 @@ TEST(RunCheck, ViolationsOfAParticleAreReported) {
         const std::vector<Segment> segments{{particles.position[i], to, 0.5}};
         ForceInput moved;
         moved.position = to;
-        check.check(i, particles, moved, {1.0, 1.0}, segments, violations);
+        MoveReport report{i, particles, moved};
+        report.end = report.stored_time = 1.0;
+        report.segments = segments;
+        check.check(report, violations);
         return violations.size();
     };
     EXPECT_EQ(move(0, {2, 2, 2}), 0U);

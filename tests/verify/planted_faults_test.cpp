@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ricochet/collision/collision_world.h"
-#include "ricochet/simulation/run_recorder.h"
+#include "ricochet/simulation/run_check.h"
 #include "ricochet/verify/verifier.h"
 #include "support/simple_meshes.h"
 

@@ -105,7 +105,8 @@ private:
     [[nodiscard]] Vec3 most_of(const Vec3& given, const Vec3& along, double most, const Is& is_allowed) const {
         const auto is_sound = [&](double friction) {
             const Vec3 by = impulse_with(given, friction * along);
-            return dot(by, normal_) > 0.0 && !gains(by) && is_allowed(by);
+            // Bodies that jam would need a pull after `given`, and the sum of the two could leave the friction cone.
+            return dot(by - given, normal_) > 0.0 && !gains(by) && is_allowed(by);
         };
         const double friction = is_sound(most) ? most : bisect(0.0, most, kHalvings, is_sound).low;
         return impulse_with(given, friction * along);

@@ -8,7 +8,6 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/rollback.h"
 #include "ricochet/simulation/cloud_motion.h"
-#include "ricochet/simulation/heat_stage.h"
 
 namespace ricochet {
 
@@ -85,7 +84,7 @@ void schedule_query(const MoverParts& parts, std::size_t i, const MovingParticle
                     double until, bool is_pulled) {
     if (parts.store.is_fixed(i) || parts.store.is_asleep(i)) {
         parts.schedule.leave_alone(i);
-    } else if (!flies_on(moved, outcome) || parts.observers.coupled->is_active() || is_pulled ||
+    } else if (!flies_on(moved, outcome) || parts.hooks.coupled->is_active() || is_pulled ||
                parts.store.cores().has(i)) {
         parts.schedule.forget(i, moved.clear);
     } else {
@@ -103,24 +102,11 @@ void schedule_query(const MoverParts& parts, std::size_t i, const MovingParticle
     }
 }
 
-/// Records the passages of particle i at counters between the position `from`, in m, and its present position.
-void note_passages(const MoverParts& parts, std::size_t i, const Vec3& from, std::span<const FlownPiece> flown,
-                   std::span<const Segment> segments, BlockRecord& record) {
-    if (parts.observers.passages == nullptr) return;
-    const Particles& particles = parts.store.particles();
-    const MovedParticle moved{particles.id[i], particles.mass[i], from, particles.position[i]};
-    if (parts.observers.passages->needs_segments()) {
-        parts.observers.passages->trace(moved, segments, record.passages);
-    } else {
-        parts.observers.passages->trace(moved, flown, record.passages);
-    }
-}
-
 }  // namespace
 
 void ActiveMover::move(const ActiveSet& active, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
     blocks.resize(std::max(blocks.size(), active.blocks()));
-    const CloudMotion* const clouds = parts_.observers.clouds;
+    const CloudMotion* const clouds = parts_.hooks.clouds;
     parallel_for_blocks(active.blocks(), 1, [&](std::size_t block, std::size_t, std::size_t) {
         thread_local MoveScratch scratch;
         prepare(scratch);
@@ -140,9 +126,8 @@ void ActiveMover::prepare(MoveScratch& scratch) const {
     scratch.loads.clear();
     scratch.record_loads = parts_.recorder.collects_loads();
     scratch.record_contacts = parts_.recorder.collects_contacts();
-    const bool traces_segments = parts_.observers.passages != nullptr && parts_.observers.passages->needs_segments();
-    scratch.record_segments = parts_.observers.check != nullptr || traces_segments;
-    scratch.record_motions = parts_.observers.check != nullptr || parts_.observers.meter != nullptr;
+    scratch.record_segments = parts_.hooks.observers.needs().segments;
+    scratch.record_motions = parts_.hooks.observers.needs().motions;
 }
 
 void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record,
@@ -165,30 +150,45 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     scratch.flown.clear();
     scratch.motions.clear();
     scratch.impacts.clear();
-    const RecordedMotion before{particle.state.position, particle.state.velocity, particle.spin};
+    const RecordedMotion before = particle.recorded_motion();
     const bool wants_deviation = as_planned && coupled().wants_deviation_of(i);
-    scratch.record_flown = wants_deviation || parts_.observers.passages != nullptr;
+    scratch.record_flown = wants_deviation || parts_.hooks.observers.needs().pieces;
     // The response `exact` tries fly_clear(), then calls ParticleMover::run().
     const MoveOutcome outcome = response_.move(particle, duration, scratch);
     if (wants_deviation)
         record_deviation(i, particle, outcome, scratch.flown, impulse_of(std::span(scratch.hits).subspan(first_hit)));
-    if (parts_.observers.meter != nullptr) {
-        parts_.observers.meter->note(i, particle.state, scratch, first_record, first_load, record.heat);
-    }
-    if (parts_.observers.check != nullptr) {
-        const RecordedMotion after{particle.state.position, particle.state.velocity, particle.spin};
-        parts_.observers.check->check(i, parts_.store.particles(), particle.state, {life.end, particle.stored_time},
-                                      scratch.segments, record.violations, {before, after, scratch.motions});
-        RunCheck::check_rebounds(particle.id, scratch.impacts, record.violations);
+    if (const MoveObservers& observers = parts_.hooks.observers; !observers.empty()) {
+        MoveReport report = report_of(i, before, particle, life.end, scratch);
+        report.pieces = scratch.flown;
+        report.contacts = report.contacts.subspan(first_record);
+        report.loads = report.loads.subspan(first_load);
+        observers.report(report, record);
     }
     for (std::size_t k = first_record; particle.state.whole_radius > 0.0 && k < scratch.records.size(); ++k) {
         scratch.records[k].radius = particle.state.whole_radius;
     }
     if (i < bounces_.size()) bounces_[i] += outcome.meetings();
     const MoveImpulses impulses{std::span(scratch.hits).subspan(first_hit), {}, {}};
-    const Vec3 from = parts_.store.particles().position[i];
     write_back(i, particle, outcome, life.end, impulses, record, lead != nullptr);
-    note_passages(parts_, i, from, scratch.flown, scratch.segments, record);
+}
+
+/// Returns the report of a move of particle i, whose lists contain only this move. before: its motion at the start.
+/// end: end of its life in the substep, in s.
+MoveReport ActiveMover::report_of(std::size_t i, const RecordedMotion& before, const MovingParticle& moved, double end,
+                                  const MoveLists& lists) const {
+    return {i,
+            parts_.store.particles(),
+            moved.state,
+            before,
+            moved.recorded_motion(),
+            end,
+            moved.stored_time,
+            {},
+            lists.segments,
+            lists.motions,
+            lists.impacts,
+            lists.records,
+            lists.loads};
 }
 
 MovingParticle ActiveMover::load(std::size_t i, double start) {
@@ -196,8 +196,8 @@ MovingParticle ActiveMover::load(std::size_t i, double start) {
     particle.candidates = parts_.schedule.candidates(i);
     particle.clear = parts_.schedule.clear(i);
     if (i < bounces_.size()) particle.bounces_before = bounces_[i];
-    if (parts_.observers.offspring != nullptr) {
-        particle.shatter_impulse = parts_.observers.offspring->shatter_impulse(parts_.store.particles(), i);
+    if (parts_.hooks.offspring != nullptr) {
+        particle.shatter_impulse = parts_.hooks.offspring->shatter_impulse(parts_.store.particles(), i);
     }
     particle.planned = coupled().is_planned_in_contact(i) ? nullptr : coupled().flight_of(i);
     particle.state.coupling = coupled().coupling_of(i);
@@ -237,7 +237,7 @@ bool ActiveMover::load_member(std::size_t i, const TimeSpan& step, IslandMember&
     member.end = life.end;
     member.is_fixed = parts_.store.is_fixed(i);
     member.is_free = parts_.schedule.is_in_free_flight(i);
-    member.keeps_path = parts_.observers.passages != nullptr;
+    member.keeps_path = parts_.hooks.observers.needs().pieces;
     return true;
 }
 
@@ -245,15 +245,12 @@ void ActiveMover::write_back(IslandMember& member, const TimeSpan& step, BlockRe
     const std::size_t i = member.particle;
     MovingParticle& moving = member.moving;
     const TimeSpan life = life_in(parts_.store.particles(), i, step);
-    if (parts_.observers.check != nullptr && !member.is_fixed) {
+    if (const MoveObservers& observers = parts_.hooks.observers; !observers.empty() && !member.is_fixed) {
         const Particles& p = parts_.store.particles();
         const Vec3 spin = parts_.store.load(i, life.begin, false).spin;
-        parts_.observers.check->check(i, p, moving.state, {life.end, moving.stored_time}, member.lists.segments,
-                                      record.violations,
-                                      {{p.position[i], p.velocity[i], spin},
-                                       {moving.state.position, moving.state.velocity, moving.spin},
-                                       member.lists.motions});
-        RunCheck::check_rebounds(moving.id, member.lists.impacts, record.violations);
+        MoveReport report = report_of(i, {p.position[i], p.velocity[i], spin}, moving, life.end, member.lists);
+        report.pieces = member.trajectory;
+        observers.report(report, record);
     }
     for (ContactRecord& contact : member.lists.records) {
         if (moving.state.whole_radius > 0.0) contact.radius = moving.state.whole_radius;
@@ -267,9 +264,7 @@ void ActiveMover::write_back(IslandMember& member, const TimeSpan& step, BlockRe
     }
     // A sphere that has slept on surfaces alone has pressed on them until now, so its weight is added.
     if (parts_.store.is_asleep(i)) record.counts.lost_impulses += add_weight(i, life.begin, 1.0);
-    const Vec3 from = parts_.store.particles().position[i];
     write_back(i, moving, member.outcome, life.end, {member.lists.hits, {}, member.pair_velocity_change}, record);
-    note_passages(parts_, i, from, member.trajectory, member.lists.segments, record);
 }
 
 void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
@@ -292,18 +287,18 @@ void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& ste
         const SystemParticle& moved = system[k];
         if (parts_.store.is_fixed(i) || moved.stop <= moved.start) continue;
         BlockRecord& record = blocks[k / kParticleBlock];
-        if (parts_.observers.check != nullptr) {
-            parts_.observers.check->check(i, parts_.store.particles(), moved.particle.state, {moved.stop, moved.stop},
-                                          moved.segments, record.violations);
+        if (!parts_.hooks.observers.empty()) {
+            MoveReport report{i, parts_.store.particles(), moved.particle.state};
+            report.end = report.stored_time = moved.stop;
+            report.segments = moved.segments;
+            parts_.hooks.observers.report(report, record);
         }
         const bool as_planned = moved.start == step.begin && moved.stop == step.end;
         if (as_planned && coupled().wants_deviation_of(i)) {
             std::vector<FlownPiece> flown;
             record_deviation(i, moved.particle, moved.outcome, flown, moved.surface_impulse);
         }
-        const Vec3 from = parts_.store.particles().position[i];
         write_back(i, moved.particle, moved.outcome, moved.stop, {{}, moved.surface_impulse, {}}, record);
-        note_passages(parts_, i, from, {}, moved.segments, record);
     }
     for (std::size_t k = 0; k < blocks.size(); ++k) record_lists(scratch[k], blocks[k]);
 }

@@ -13,6 +13,7 @@
 #include "ricochet/response/event_island.h"
 #include "ricochet/response/response.h"
 #include "ricochet/simulation/coupled_motion.h"
+#include "ricochet/simulation/move_report.h"
 #include "ricochet/simulation/offspring.h"
 #include "ricochet/simulation/particle_store.h"
 #include "ricochet/simulation/query_schedule.h"
@@ -21,7 +22,6 @@
 namespace ricochet {
 
 class CloudMotion;
-class FrictionMeter;
 class SleepingIslands;
 
 /// Particles per unit of parallel work.
@@ -80,15 +80,13 @@ inline TimeSpan life_in(const Particles& particles, std::size_t i, const TimeSpa
             std::min(step.end, particles.birth_time[i] + particles.lifetime[i])};
 }
 
-/// Objects that take part in the motion of single particles, owned by modules. Null: the run does not have the object.
-struct MoveObservers {
+/// Objects of modules that take part in the motion of single particles. Null: the run does not have the object.
+struct MoveHooks {
     CoupledMotion* coupled = nullptr;  ///< null only before the first step
     const Offspring* offspring = nullptr;
     const CloudMotion* clouds = nullptr;                ///< move() skips the particles that follow a parent
     const SleepingIslands* sleeping_islands = nullptr;  ///< compute the weights of their sleepers
-    RunCheck* check = nullptr;
-    const FrictionMeter* meter = nullptr;
-    const PassageFinder* passages = nullptr;
+    MoveObservers observers;
 };
 
 /// Parts of the simulation that the mover uses and changes. All must outlive the mover.
@@ -96,7 +94,7 @@ struct MoverParts {
     ParticleStore& store;
     QuerySchedule& schedule;
     RunRecorder& recorder;
-    const MoveObservers& observers;
+    const MoveHooks& hooks;
 };
 
 /// Returns the sum of the impulses of surfaces on a particle, in N s.
@@ -180,15 +178,17 @@ public:
     }
     /// Wakes a sphere that sleeps on others, at a time, in s, before it is removed from the sleeping islands.
     void wake(std::size_t i, double time);
-    /// Tells the verifier, if there is one, that a particle has kept its position in a step.
-    void check_sleeper(std::size_t i, const TimeSpan& step, BlockRecord& record) const;
+    /// Reports to observers of paths that a particle has kept its position in a step.
+    void report_sleeper(std::size_t i, const TimeSpan& step, BlockRecord& record) const;
 
 private:
-    [[nodiscard]] CoupledMotion& coupled() const { return *parts_.observers.coupled; }
+    [[nodiscard]] CoupledMotion& coupled() const { return *parts_.hooks.coupled; }
     void record_deviation(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
                           std::vector<FlownPiece>& flown, const Vec3& impulse);
     void record_deviation(IslandMember& member);
     [[nodiscard]] MovingParticle load(std::size_t i, double start);
+    [[nodiscard]] MoveReport report_of(std::size_t i, const RecordedMotion& before, const MovingParticle& moved,
+                                       double end, const MoveLists& lists) const;
     /// Impulses of surfaces and other spheres on a particle in a move.
     struct MoveImpulses {
         std::span<const SurfaceHit> hits{};

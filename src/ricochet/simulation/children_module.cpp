@@ -8,7 +8,7 @@ namespace ricochet {
 
 ChildrenModule::ChildrenModule(const ModuleParts& parts)
     : parts_(parts), offspring_({parts.emitters, parts.scene, parts.share, parts.population.memory(), parts.options}) {
-    parts.observers.offspring = &offspring_;
+    parts.hooks.offspring = &offspring_;
 }
 
 void ChildrenModule::set_clouds(CloudMotion& clouds) {

@@ -18,7 +18,7 @@ ActiveSet FreeFlights::advance(const ParticleRange& range, const TimeSpan& step,
     const std::optional<Vec3>& common = rules_.forces.common_acceleration();
     const FreeFlight shared(rules_.settings.integrator, common.value_or(Vec3{}), step.end - step.begin);
     std::vector<std::size_t> sizes(blocks_of(range.size()));
-    const bool records = observers_.check != nullptr || observers_.passages != nullptr;
+    const bool records = hooks_.observers.needs().has_path();
     // In a substep, the particles would count as free in the next substeps, too.
     const bool may_fly_clear = schedule_.keeps_clear_spaces() && schedule_.is_whole_step(step);
     if (records) blocks.resize(std::max(blocks.size(), sizes.size()));
@@ -67,8 +67,7 @@ void FreeFlights::advance_each(std::size_t begin, std::size_t stop, const TimeSp
                                 common ? *common : rules_.forces.acceleration(store_.force_input(i, step.begin)),
                                 step.end - step.begin);
         const PhaseState end = flight.step(particles.position[i], particles.velocity[i]);
-        if (observers_.check != nullptr) note_motion(i, end, step, *record);
-        if (observers_.passages != nullptr) note_passages(i, end, flight.duration(), *record);
+        if (record != nullptr) report(i, piece_to(i, end, flight.duration()), step, *record);
         particles.position[i] = end.position;
         particles.velocity[i] = end.velocity;
     }
@@ -83,15 +82,14 @@ void FreeFlights::fly_in_clear_spaces(std::size_t begin, std::size_t stop, const
         rules_.poll();
         const std::optional<Flight> flight = clear_flight(i, step);
         if (!flight) continue;
-        const PhaseState end{flight->path.end, flight->end_velocity};
-        if (observers_.check != nullptr) note_motion(i, end, step, *record);
-        if (observers_.passages != nullptr) {
+        if (record != nullptr) {
             const double duration = flight->path.duration;
             const double start = (step.begin + duration) - duration;  // computed like the beginning of a queried flight
-            note_passages(i, {flight->path, start, duration, particles.velocity[i], end.velocity, true}, *record);
+            report(i, {flight->path, start, duration, particles.velocity[i], flight->end_velocity, true}, step,
+                   *record);
         }
-        particles.position[i] = end.position;
-        particles.velocity[i] = end.velocity;
+        particles.position[i] = flight->path.end;
+        particles.velocity[i] = flight->end_velocity;
         schedule_.fly_this_step(i);
     }
 }
@@ -103,7 +101,7 @@ std::optional<Flight> FreeFlights::clear_flight(std::size_t i, const TimeSpan& s
     const bool lives =
         particles.birth_time[i] <= step.begin && particles.birth_time[i] + particles.lifetime[i] > step.end;
     if (!lives || step.end > clear.end) return std::nullopt;
-    if (observers_.clouds != nullptr && observers_.clouds->has_parent(i)) return std::nullopt;
+    if (hooks_.clouds != nullptr && hooks_.clouds->has_parent(i)) return std::nullopt;
     const double duration = step.end - step.begin;
     const ForceInput state = store_.force_input(i, step.begin);
     const Flight flight = begin_flight(rules_.settings.integrator, rules_.forces, state, duration);
@@ -112,34 +110,30 @@ std::optional<Flight> FreeFlights::clear_flight(std::size_t i, const TimeSpan& s
     return flight;
 }
 
-/// Lets the verifier check a flight that is not stored yet. end: state at its end.
-void FreeFlights::note_motion(std::size_t i, const PhaseState& end, const TimeSpan& step, BlockRecord& record) const {
-    const Particles& particles = store_.particles();
-    ForceInput moved = store_.force_input(i, step.end);
-    moved.position = end.position;
-    moved.velocity = end.velocity;
-    const Segment segment{particles.position[i], end.position, step.begin};
-    observers_.check->check(i, particles, moved, {step.end, step.end}, {&segment, 1}, record.violations);
-}
-
-/// Records a particle's passages through counters in a flight that is not stored yet. end: state at its end.
-void FreeFlights::note_passages(std::size_t i, const PhaseState& end, double duration, BlockRecord& record) const {
-    const Particles& particles = store_.particles();
-    const Vec3& from = particles.position[i];
-    const Vec3& velocity = particles.velocity[i];
-    // The distance of a parabola from its chord is at most its duration times its velocity change, divided by 8.
-    if (!observers_.passages->may_pass(from, end.position, duration * length(end.velocity - velocity) / 8.0)) return;
+/// Returns the path of a free flight of particle i that is not stored yet. end: its state at the end.
+FlownPiece FreeFlights::piece_to(std::size_t i, const PhaseState& end, double duration) const {
+    const Vec3& from = store_.particles().position[i];
+    const Vec3& velocity = store_.particles().velocity[i];
     const bool is_line = kicks_first(rules_.settings.integrator.kind) ||
                          rules_.settings.integrator.kind == IntegratorKind::forward_euler;
-    const Path path = is_line ? line_path(from, (end.position - from) / duration, duration)
-                              : hermite_path(from, velocity, end.position, end.velocity, duration);
-    note_passages(i, {path, 0.0, duration, velocity, end.velocity, true}, record);
+    Path path = is_line ? line_path(from, (end.position - from) / duration, duration)
+                        : hermite_path(from, velocity, end.position, end.velocity, duration);
+    path.end = end.position;  // a line's own end can differ by rounding
+    return {path, 0.0, duration, velocity, end.velocity, true};
 }
 
-void FreeFlights::note_passages(std::size_t i, const FlownPiece& piece, BlockRecord& record) const {
+/// Reports a flight of particle i over a whole step that is not stored yet.
+void FreeFlights::report(std::size_t i, const FlownPiece& piece, const TimeSpan& step, BlockRecord& record) const {
     const Particles& particles = store_.particles();
-    observers_.passages->trace({particles.id[i], particles.mass[i], particles.position[i], piece.path.end}, {&piece, 1},
-                               record.passages);
+    ForceInput moved = store_.force_input(i, step.end);
+    moved.position = piece.path.end;
+    moved.velocity = piece.arrival;
+    const Segment segment{particles.position[i], piece.path.end, step.begin};
+    MoveReport report{i, particles, moved};
+    report.end = report.stored_time = step.end;
+    report.pieces = {&piece, 1};
+    report.segments = {&segment, 1};
+    hooks_.observers.report(report, record);
 }
 
 void FreeFlights::begin_deferring() {

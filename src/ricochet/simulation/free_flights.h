@@ -89,9 +89,8 @@ private:
 class FreeFlights {
 public:
     /// All arguments must outlive the object.
-    FreeFlights(ParticleStore& store, QuerySchedule& schedule, const ResponseRules& rules,
-                const MoveObservers& observers)
-        : store_(store), schedule_(schedule), rules_(rules), observers_(observers) {}
+    FreeFlights(ParticleStore& store, QuerySchedule& schedule, const ResponseRules& rules, const MoveHooks& hooks)
+        : store_(store), schedule_(schedule), rules_(rules), hooks_(hooks) {}
 
     /// Advances the free flights of the range, and the flights that stay in known free space. Returns the particles
     /// that need a query, ascending, in blocks of the range.
@@ -127,9 +126,8 @@ private:
     void advance_each(std::size_t begin, std::size_t end, const TimeSpan& step, BlockRecord* record);
     void fly_in_clear_spaces(std::size_t begin, std::size_t end, const TimeSpan& step, BlockRecord* record);
     [[nodiscard]] std::optional<Flight> clear_flight(std::size_t i, const TimeSpan& step) const;
-    void note_motion(std::size_t i, const PhaseState& end, const TimeSpan& step, BlockRecord& record) const;
-    void note_passages(std::size_t i, const PhaseState& end, double duration, BlockRecord& record) const;
-    void note_passages(std::size_t i, const FlownPiece& piece, BlockRecord& record) const;
+    [[nodiscard]] FlownPiece piece_to(std::size_t i, const PhaseState& end, double duration) const;
+    void report(std::size_t i, const FlownPiece& piece, const TimeSpan& step, BlockRecord& record) const;
     void catch_up(std::size_t i);
     void catch_up_active(std::span<const std::uint32_t> active);
     void catch_up_all();
@@ -137,7 +135,7 @@ private:
     ParticleStore& store_;
     QuerySchedule& schedule_;
     const ResponseRules& rules_;
-    const MoveObservers& observers_;
+    const MoveHooks& hooks_;
     std::optional<DeferredSteps> deferred_;
 };
 

@@ -23,30 +23,30 @@ double lost_along_normal(const ContactRecord& record) {
 
 }  // namespace
 
-void FrictionMeter::note(std::size_t i, const ForceInput& moved, const MoveScratch& scratch, std::size_t first_record,
-                         std::size_t first_load, std::vector<HeatGain>& gains) const {
-    std::size_t record = first_record;
-    std::size_t load = first_load;
-    for (const MotionPart& part : scratch.motions) {
+void FrictionMeter::measure(const MoveReport& move, std::vector<HeatGain>& gains) const {
+    const ForceInput& moved = move.moved;
+    std::size_t contact = 0;
+    std::size_t load = 0;
+    for (const MotionPart& part : move.motions) {
         if (part.kind == MotionPart::Kind::flight) continue;
         const double end = part.time + part.duration;
         const bool is_impact = part.duration == 0.0;
         double lost = kinetic(part.begin, part.radius, moved.mass) - kinetic(part.end, part.radius, moved.mass);
         if (!is_impact) lost += work_of_forces(part, moved);
-        for (; load < scratch.loads.size() && scratch.loads[load].time <= end; ++load) {
-            if (is_impact || !scratch.loads[load].impact)
-                lost -= scratch.loads[load].work;
+        for (; load < move.loads.size() && move.loads[load].time <= end; ++load) {
+            if (is_impact || !move.loads[load].impact)
+                lost -= move.loads[load].work;
             else
                 break;  // this load belongs to the impact at the end of the contact
         }
         double along_normal = 0.0;
-        for (; is_impact && record < scratch.records.size() && scratch.records[record].time <= end; ++record) {
-            along_normal += lost_along_normal(scratch.records[record]);
+        for (; is_impact && contact < move.contacts.size() && move.contacts[contact].time <= end; ++contact) {
+            along_normal += lost_along_normal(move.contacts[contact]);
         }
         lost = std::max(lost, 0.0);  // negative only by rounding
         along_normal = std::clamp(along_normal, 0.0, lost);
         const double heat = heat_.impact_fraction * along_normal + heat_.friction_fraction * (lost - along_normal);
-        if (heat > 0.0) gains.push_back({i, part.time + 0.5 * part.duration, heat});
+        if (heat > 0.0) gains.push_back({move.index, part.time + 0.5 * part.duration, heat});
     }
 }
 
@@ -83,6 +83,10 @@ HeatStage::HeatStage(HeatSettings heat, ParticleStore& store, const ForceField& 
       store_(store),
       column_(store.particles().attributes.find(kTemperatureAttribute).value()),
       meter_(heat_, forces, bodies) {}
+
+void HeatStage::observe(const MoveReport& move, BlockRecord& block) {
+    if (heat_.is_heated_by_surfaces()) meter_.measure(move, block.heat);
+}
 
 void HeatStage::before_generation(const ParticleRange& generation, const TimeSpan& step) {
     gains_.clear();

@@ -23,10 +23,8 @@ public:
     FrictionMeter(const HeatSettings& heat, const ForceField& forces, const MovingColliders& bodies)
         : heat_(heat), forces_(forces), bodies_(bodies) {}
 
-    /// Appends the heat gains of particle i in the order of time. scratch: has its entries from first_record and
-    /// first_load on.
-    void note(std::size_t i, const ForceInput& moved, const MoveScratch& scratch, std::size_t first_record,
-              std::size_t first_load, std::vector<HeatGain>& gains) const;
+    /// Appends the heat gains of a move in the order of time.
+    void measure(const MoveReport& move, std::vector<HeatGain>& gains) const;
 
 private:
     [[nodiscard]] double work_of_forces(const MotionPart& part, const ForceInput& moved) const;
@@ -42,9 +40,8 @@ public:
     /// store: particles with the temperature attribute. It must outlive the object. Other arguments: see FrictionMeter.
     HeatStage(HeatSettings heat, ParticleStore& store, const ForceField& forces, const MovingColliders& bodies);
 
-    /// Returns the meter, or null if surfaces do not heat particles.
-    [[nodiscard]] const FrictionMeter* meter() const { return heat_.is_heated_by_surfaces() ? &meter_ : nullptr; }
-
+    [[nodiscard]] MoveParts needs() const override { return {.motions = heat_.is_heated_by_surfaces()}; }
+    void observe(const MoveReport& move, BlockRecord& block) override;
     /// Stores the coefficients of convection of the particles before they move.
     void before_generation(const ParticleRange& generation, const TimeSpan& step) override;
     void record(const ParticleRange& generation, const std::vector<BlockRecord>& blocks,

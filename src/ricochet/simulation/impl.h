@@ -35,10 +35,10 @@ struct Simulation::Impl {
 
     [[nodiscard]] double now() const { return clock.time_at(recorder.statistics().steps); }
     [[nodiscard]] const Particles& particles() const { return population.particles(); }
-    [[nodiscard]] const CoupledMotion& coupled() const { return *modules.observers().coupled; }
+    [[nodiscard]] const CoupledMotion& coupled() const { return *modules.hooks().coupled; }
     [[nodiscard]] ModuleParts parts() {
-        return {options, warnings,           clock, share, scene, *response, recorder, population, emission.emitters(),
-                mover,   modules.observers()};
+        return {options, warnings,       clock, share, scene, *response, recorder, population, emission.emitters(),
+                mover,   modules.hooks()};
     }
     void restore(const ByteSource& source);
     void wake_all_sleepers();

@@ -286,7 +286,7 @@ void LastingContacts::check_sleepers(const TimeSpan& step, std::vector<BlockReco
     if (sleeping_islands_.empty() || are_children_ || rules().bodies.empty()) return;
     BlockRecord& record = blocks.emplace_back();
     for (std::size_t k = 0; k < traces_.is_asleep.size(); ++k) {
-        if (is_asleep(static_cast<std::uint32_t>(k))) parts_.mover.check_sleeper(k, step, record);
+        if (is_asleep(static_cast<std::uint32_t>(k))) parts_.mover.report_sleeper(k, step, record);
     }
 }
 

@@ -2,8 +2,9 @@
 /// Private to the simulation: modules, parts of a run that the stages of a step call, and the list of modules.
 ///
 /// A module owns the objects of one capability. A stage calls it once for all particles of a generation or a block.
-/// Objects that take part in the motion of single particles are in MoveObservers. The list in modules.cpp has the
-/// modules in the order of their calls. A new module needs its class, a line in that list, and tests.
+/// A module that reads the paths or impacts of particles overrides the functions of MoveObserver. Objects that take
+/// part in the motion of single particles are in MoveHooks. The list in modules.cpp has the modules in the order of
+/// their calls. A new module needs its class, a line in that list, and tests.
 #pragma once
 
 #include <algorithm>
@@ -25,13 +26,8 @@ class StateHash;
 /// Base class of modules. A function that a module does not override does nothing. A step calls the functions in the
 /// order of declaration. It calls before_generation() to spawn() once per spawn generation, and plan() to record() once
 /// per substep of the generation.
-class Module {
+class Module : public MoveObserver {
 public:
-    Module() = default;
-    virtual ~Module() = default;
-    Module(const Module&) = delete;
-    Module& operator=(const Module&) = delete;
-
     // Stages of a step.
 
     virtual void begin_step(const TimeSpan& /*step*/) {}
@@ -93,7 +89,10 @@ public:
 /// The modules of a run, in the order of their calls.
 class ModuleList {
 public:
-    void add(std::unique_ptr<Module> module) { modules_.push_back(std::move(module)); }
+    void add(std::unique_ptr<Module> module) {
+        hooks_.observers.add(*module);
+        modules_.push_back(std::move(module));
+    }
     /// Calls call(module) for each module.
     template <class Call>
     void each(const Call& call) const {
@@ -123,12 +122,12 @@ public:
         return has_spawned;
     }
     /// Returns the objects of the modules that take part in the motion of single particles.
-    [[nodiscard]] MoveObservers& observers() { return observers_; }
-    [[nodiscard]] const MoveObservers& observers() const { return observers_; }
+    [[nodiscard]] MoveHooks& hooks() { return hooks_; }
+    [[nodiscard]] const MoveHooks& hooks() const { return hooks_; }
 
 private:
     std::vector<std::unique_ptr<Module>> modules_;
-    MoveObservers observers_;
+    MoveHooks hooks_;
 };
 
 }  // namespace ricochet

@@ -11,6 +11,7 @@
 #include "ricochet/simulation/heat_stage.h"
 #include "ricochet/simulation/pair_motion.h"
 #include "ricochet/simulation/retirement.h"
+#include "ricochet/simulation/run_check.h"
 #include "ricochet/verify/sphere_overlaps.h"
 
 namespace ricochet {
@@ -49,9 +50,10 @@ private:
 class VerificationModule final : public Module {
 public:
     explicit VerificationModule(const ModuleParts& parts)
-        : parts_(parts), check_(parts.scene.world(), parts.scene.moving()) {
-        parts.observers.check = &check_;
-    }
+        : parts_(parts), check_(parts.scene.world(), parts.scene.moving()) {}
+
+    [[nodiscard]] MoveParts needs() const override { return {.segments = true, .motions = true}; }
+    void observe(const MoveReport& move, BlockRecord& block) override { check_.check(move, block.violations); }
 
     void verify(const TimeSpan& step) override {
         if (parts_.options.particle_contacts) verify_spheres(step);
@@ -85,10 +87,8 @@ std::unique_ptr<ChildrenModule> make_children(const ModuleParts& parts) {
 /// Returns the module, or null if temperatures do not change.
 std::unique_ptr<HeatStage> make_heat(std::optional<HeatSettings>& heat, const ModuleParts& parts) {
     if (!heat) return nullptr;
-    auto stage = std::make_unique<HeatStage>(std::move(*heat), parts.population.store(), parts.response.rules().forces,
-                                             parts.scene.moving());
-    parts.observers.meter = stage->meter();
-    return stage;
+    return std::make_unique<HeatStage>(std::move(*heat), parts.population.store(), parts.response.rules().forces,
+                                       parts.scene.moving());
 }
 
 /// Returns the module, or null without clouds.
@@ -98,7 +98,7 @@ std::unique_ptr<CloudMotion> make_clouds(const ModuleParts& parts, const Retirem
         return nullptr;
     }
     auto clouds = std::make_unique<CloudMotion>(parts.emitters, parts.population.store(), parts.mover, retirement);
-    parts.observers.clouds = clouds.get();
+    parts.hooks.clouds = clouds.get();
     children->set_clouds(*clouds);
     return clouds;
 }
@@ -111,7 +111,8 @@ std::unique_ptr<PairMotion> make_pairs(const ModuleParts& parts, SpringsModule& 
     PairParts of_pairs{store,    parts.population.schedule(), parts.mover, parts.response, springs.motion(),
                        settings, PairMaterials(settings)};
     if (!settings.materials.empty()) of_pairs.material_column = store.particles().attributes.find(kMaterialAttribute);
-    auto pairs = std::make_unique<PairMotion>(of_pairs, parts.recorder, parts.observers);
+    auto pairs = std::make_unique<PairMotion>(of_pairs, parts.recorder, parts.options.verify);
+    parts.hooks.sleeping_islands = &pairs->sleeping_islands();
     springs.set_pairs(*pairs);
     return pairs;
 }
@@ -119,9 +120,7 @@ std::unique_ptr<PairMotion> make_pairs(const ModuleParts& parts, SpringsModule& 
 /// Returns the module, or null without counters.
 std::unique_ptr<CounterTally> make_counters(const SimulationSetup& setup, const ModuleParts& parts) {
     if (setup.counters.empty()) return nullptr;
-    auto counters = std::make_unique<CounterTally>(setup.counters, parts.options.response == ResponseKind::exact);
-    parts.observers.passages = &counters->finder();
-    return counters;
+    return std::make_unique<CounterTally>(setup.counters, parts.options.response == ResponseKind::exact);
 }
 
 }  // namespace

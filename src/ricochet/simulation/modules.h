@@ -33,7 +33,7 @@ struct ModuleParts {
     Population& population;
     const std::vector<Emitter>& emitters;
     ActiveMover& mover;
-    MoveObservers& observers;  ///< modules set the pointers to their objects
+    MoveHooks& hooks;  ///< modules set the pointers to their objects
 };
 
 /// Adds the children of each generation, and records all births.

@@ -7,6 +7,7 @@
 
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/prefetch.h"
+#include "ricochet/simulation/run_check.h"
 
 namespace ricochet {
 namespace {
@@ -42,16 +43,14 @@ verify::ImpactAudit impact_audit_of(const PairParts& parts) {
 
 }  // namespace
 
-PairMotion::PairMotion(const PairParts& parts, RunRecorder& recorder, MoveObservers& observers)
+PairMotion::PairMotion(const PairParts& parts, RunRecorder& recorder, bool verifies)
     : parts_(parts),
       recorder_(recorder),
-      observers_(observers),
+      verifies_(verifies),
       contacts_(parts),
       plans_(parts),
       islands_(parts, plans_, contacts_),
-      impact_audit_(impact_audit_of(parts)) {
-    observers.sleeping_islands = &contacts_.sleeping_islands();
-}
+      impact_audit_(impact_audit_of(parts)) {}
 
 const char* PairMotion::fault_of(std::size_t i) const {
     const bool is_known =
@@ -112,7 +111,7 @@ void PairMotion::after_substep(const ParticleRange& /*generation*/, const TimeSp
     statistics.pair_impacts += impacts.size();
     statistics.overlap_largest = std::max(statistics.overlap_largest, largest_overlap(step.end));
     recorder_.add_pair_impacts(impacts);
-    if (observers_.check != nullptr) {
+    if (verifies_) {
         const std::vector<PairMeeting> meetings = joined(islands, &IslandBuilder::Island::meetings);
         recorder_.add_pair_violations(RunCheck::check_meetings(meetings, impact_audit_));
     }

@@ -21,9 +21,10 @@ namespace ricochet {
 /// Moves spheres that meet each other.
 class PairMotion final : public Module {
 public:
-    /// All arguments must outlive the object.
-    PairMotion(const PairParts& parts, RunRecorder& recorder, MoveObservers& observers);
+    /// Parts and recorder must outlive the object. verifies: true to audit all impacts.
+    PairMotion(const PairParts& parts, RunRecorder& recorder, bool verifies);
 
+    [[nodiscard]] const SleepingIslands& sleeping_islands() const { return contacts_.sleeping_islands(); }
     /// Returns a flag per particle: 1 if other spheres, or walls with them, supported it in the last step.
     [[nodiscard]] std::vector<std::uint8_t> pressing() const { return contacts_.pressing(); }
 
@@ -52,7 +53,7 @@ private:
 
     PairParts parts_;
     RunRecorder& recorder_;
-    const MoveObservers& observers_;
+    bool verifies_;
     std::size_t first_ = 0;  // first particle of the generation
     LastingContacts contacts_;
     PairPlans plans_;

@@ -82,7 +82,7 @@ Population::Population(ParticleStore store, const AccelerationSwitches& accelera
                        const PopulationParts& parts)
     : store_(std::move(store)),
       schedule_(parts.clock, keeps_clear_spaces(parts)),
-      flights_(store_, schedule_, parts.response.rules(), parts.modules.observers()),
+      flights_(store_, schedule_, parts.response.rules(), parts.modules.hooks()),
       acceleration_(acceleration),
       memory_(particle_bytes),
       parts_(parts) {

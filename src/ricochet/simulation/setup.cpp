@@ -52,7 +52,7 @@ Simulation::Impl::Impl(SimulationSetup& setup, double particle_bytes)
       population(make_store(setup, scene, *response), setup.acceleration, particle_bytes,
                  {options, scene, *response, clock, recorder, modules}),
       emission(setup, population, share),
-      mover({population.store(), population.schedule(), recorder, modules.observers()}, *response) {
+      mover({population.store(), population.schedule(), recorder, modules.hooks()}, *response) {
     scene.set_culling(setup.acceleration.culling);
     add_modules(modules, setup, parts());
     scene.begin_step({0.0, options.time_step});

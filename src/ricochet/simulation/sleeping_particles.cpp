@@ -12,7 +12,7 @@ std::uint64_t ActiveMover::add_weight(std::size_t i, double until, double sign) 
     if (totals.empty() || !(elapsed > 0.0)) return 0;
     std::vector<SurfaceHit> hits;
     const std::uint64_t id = parts_.store.particles().id[i];
-    const SleepingIslands* const sleeping_islands = parts_.observers.sleeping_islands;
+    const SleepingIslands* const sleeping_islands = parts_.hooks.sleeping_islands;
     if (sleeping_islands != nullptr && sleeping_islands->is_asleep(id)) {
         sleeping_islands->add_weight(id, elapsed, hits);
     } else if (parts_.store.is_asleep(i)) {
@@ -34,13 +34,16 @@ void ActiveMover::wake(std::size_t i, double time) {
     parts_.schedule.forget(i);
 }
 
-void ActiveMover::check_sleeper(std::size_t i, const TimeSpan& step, BlockRecord& record) const {
-    if (parts_.observers.check == nullptr) return;
+void ActiveMover::report_sleeper(std::size_t i, const TimeSpan& step, BlockRecord& record) const {
+    if (!parts_.hooks.observers.needs().has_path()) return;
     const Particles& particles = parts_.store.particles();
     const Vec3& position = particles.position[i];
     const Segment staying{position, position, step.end, step.begin, step.end};
-    parts_.observers.check->check(i, particles, parts_.store.force_input(i, step.end), {step.end, step.end},
-                                  {&staying, 1}, record.violations);
+    const ForceInput moved = parts_.store.force_input(i, step.end);
+    MoveReport report{i, particles, moved};
+    report.end = report.stored_time = step.end;
+    report.segments = {&staying, 1};
+    parts_.hooks.observers.report(report, record);
 }
 
 }  // namespace ricochet

@@ -14,7 +14,7 @@ SpringsModule::SpringsModule(SimulationSetup& setup, const ModuleParts& parts)
       motion_(std::move(setup.springs), setup.particles_forces, std::move(setup.solver), parts.response.rules().forces,
               parts.options.integrator, parts.options.time_step, parts.warnings.knows_implicit()),
       faces_(std::move(setup.spring_faces)) {
-    parts.observers.coupled = &motion_;
+    parts.hooks.coupled = &motion_;
     motion_.call_between([&response = parts.response] { response.rules().poll(); });
     if (parts.share.is_alone()) return;
     std::vector<std::uint64_t> ids;

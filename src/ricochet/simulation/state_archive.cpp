@@ -87,7 +87,7 @@ void archive(Archive& a, const ModuleParts& parts, const ModuleList& modules) {
     expect(a, settings_hash(parts, modules),
            "the state belongs to other options, materials, bodies, bounds or counters");
     expect_count(a, parts.emitters, "the state belongs to other emitters");
-    expect_count(a, parts.observers.coupled->springs().springs(), "the state belongs to other springs");
+    expect_count(a, parts.hooks.coupled->springs().springs(), "the state belongs to other springs");
     expect_count(a, store.particles().attributes.columns(), "the state belongs to other attributes");
     expect_count(a, recorder.totals(), "the state belongs to another choice of totals");
     expect(a, parts.options.time_step, "the state belongs to another time step");

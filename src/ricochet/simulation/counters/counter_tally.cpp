@@ -8,8 +8,21 @@
 namespace ricochet {
 
 CounterTally::CounterTally(std::span<const CounterDescription> counters, bool has_pieces)
-    : counters_(counters.begin(), counters.end()), finder_(counters, has_pieces) {
+    : counters_(counters.begin(), counters.end()), has_pieces_(has_pieces), finder_(counters) {
     for (const CounterDescription& counter : counters) totals_.push_back({counter.name});
+}
+
+MoveParts CounterTally::needs() const { return {.pieces = has_pieces_, .segments = !has_pieces_}; }
+
+void CounterTally::observe(const MoveReport& move, BlockRecord& block) {
+    const std::size_t i = move.index;
+    const MovedParticle moved{move.particles.id[i], move.particles.mass[i], move.particles.position[i],
+                              move.moved.position};
+    if (has_pieces_) {
+        finder_.trace(moved, move.pieces, block.passages);
+    } else {
+        finder_.trace(moved, move.segments, block.passages);
+    }
 }
 
 // Adds the passages in the order of particle ids, so that the sums do not depend on the order of the blocks.

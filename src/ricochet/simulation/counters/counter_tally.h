@@ -13,12 +13,13 @@ namespace ricochet {
 /// The counters and their totals. Adds up the passages that the movers find.
 class CounterTally final : public Module {
 public:
-    /// has_pieces: see PassageFinder.
+    /// has_pieces: true if the response records the pieces of paths, false if it moves particles along segments.
     CounterTally(std::span<const CounterDescription> counters, bool has_pieces);
 
-    [[nodiscard]] const PassageFinder& finder() const { return finder_; }
     [[nodiscard]] const std::vector<CounterTotals>& totals() const { return totals_; }
 
+    [[nodiscard]] MoveParts needs() const override;
+    void observe(const MoveReport& move, BlockRecord& block) override;
     void record(const ParticleRange& generation, const std::vector<BlockRecord>& blocks,
                 std::vector<ColliderLoad>& loads) override;
     [[nodiscard]] const char* fault(double time) const override;
@@ -35,6 +36,7 @@ private:
     }
 
     std::vector<CounterDescription> counters_;
+    bool has_pieces_;  // true if the response records pieces of paths, false if it moves particles along segments
     PassageFinder finder_;
     std::vector<CounterTotals> totals_;
 };

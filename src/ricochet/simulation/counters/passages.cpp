@@ -46,6 +46,15 @@ bool is_still(const FlownPiece& piece) {
            (piece.path.c[1] == Vec3{} && piece.path.c[2] == Vec3{} && piece.path.c[3] == Vec3{});
 }
 
+/// Returns true if a single piece certainly stays on one side of a disk's plane, as most free flights do.
+bool stays_on_one_side(const CounterDisk& disk, const MovedParticle& moved, std::span<const FlownPiece> pieces) {
+    if (pieces.size() != 1) return false;
+    const bool is_in_front = disk.is_in_front(moved.from);
+    const ControlPoints hull = pieces[0].path.control_points();
+    return is_in_front == disk.is_in_front(moved.to) &&
+           std::ranges::all_of(hull, [&](const Vec3& point) { return disk.is_in_front(point) == is_in_front; });
+}
+
 /// Follows one particle and finds its passages through one disk.
 class DiskTrace {
 public:
@@ -91,16 +100,7 @@ bool CounterDisk::contains(const Vec3& position) const {
     return length(offset - dot(normal_, offset) * normal_) <= radius_;
 }
 
-PassageFinder::PassageFinder(std::span<const CounterDescription> counters, bool has_pieces)
-    : disks_(counters.begin(), counters.end()), has_pieces_(has_pieces) {}
-
-bool PassageFinder::may_pass(const Vec3& from, const Vec3& to, double margin) const {
-    return std::ranges::any_of(disks_, [&](const CounterDisk& disk) {
-        const double a = disk.height(from);
-        const double b = disk.height(to);
-        return !(std::min(a, b) > margin) && !(std::max(a, b) < -margin);
-    });
-}
+PassageFinder::PassageFinder(std::span<const CounterDescription> counters) : disks_(counters.begin(), counters.end()) {}
 
 void PassageFinder::trace(const MovedParticle& moved, std::span<const FlownPiece> pieces,
                           std::vector<Passage>& passages) const {
@@ -112,6 +112,7 @@ void PassageFinder::trace(const MovedParticle& moved, std::span<const FlownPiece
     const std::size_t first = next_moving(0);
     for (std::uint32_t n = 0; n < disks_.size(); ++n) {
         const auto report = [&](bool is_forward) { passages.push_back({n, is_forward, moved.id, moved.mass}); };
+        if (stays_on_one_side(disks_[n], moved, pieces)) continue;
         DiskTrace trace(disks_[n], moved.from);
         const Vec3& start = first < pieces.size() ? pieces[first].path.c[0] : moved.to;
         if (start != moved.from) trace.follow(line_path(moved.from, start - moved.from, 1.0), 1.0, start, report);

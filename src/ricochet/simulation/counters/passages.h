@@ -55,21 +55,15 @@ private:
 /// Finds the passages of moved particles. Several threads can use one object at the same time.
 class PassageFinder {
 public:
-    /// has_pieces: true if the response reports the pieces of paths, false if it moves particles along segments.
-    PassageFinder(std::span<const CounterDescription> counters, bool has_pieces);
+    explicit PassageFinder(std::span<const CounterDescription> counters);
 
-    /// Returns true if trace() needs the segments of a move instead of its pieces.
-    [[nodiscard]] bool needs_segments() const { return !has_pieces_; }
     /// Appends the passages of a particle along the pieces of its path.
     void trace(const MovedParticle& moved, std::span<const FlownPiece> pieces, std::vector<Passage>& passages) const;
     /// Appends the passages of a particle along segments.
     void trace(const MovedParticle& moved, std::span<const Segment> segments, std::vector<Passage>& passages) const;
-    /// Returns false if no path between two positions, within `margin`, in m, of its chord, can pass a disk's plane.
-    [[nodiscard]] bool may_pass(const Vec3& from, const Vec3& to, double margin) const;
 
 private:
     std::vector<CounterDisk> disks_;
-    bool has_pieces_;
 };
 
 }  // namespace ricochet

@@ -131,7 +131,7 @@ private:
         if (const auto forces = forces_of_single_surface()) {
             const Vec3& n = surfaces_[0].normal;
             reactions_[0] = forces->normal * n;
-            if (count_ > 0) reactions_[0] += along_tangents(forces->tangential, n);
+            if (surfaces_[0].friction > 0.0) reactions_[0] += along_tangents(forces->resistance[0], n);
             acceleration_ = a_ + velocity_of(forces->change);
             accept(forces->change);
         } else {
@@ -143,13 +143,12 @@ private:
         return {normal_direction(surface.normal), dot(a_, surface.normal) + surface.curvature};
     }
 
-    /// Returns the closed form, if there is a single surface without resistance to rolling and spinning.
+    /// Returns the closed form, if there is a single surface. Friction is its first resistance.
     [[nodiscard]] std::optional<SingleContactForces> forces_of_single_surface() const {
-        if (surfaces_.size() != 1 || count_ > 1) return std::nullopt;
-        if (count_ == 0) return solve_single_contact(contact(surfaces_[0]), nullptr, grip_.pressure);
-        if (resistances_[0].kind != Kind::slip) return std::nullopt;
-        const CoulombResistance slip = resistance(resistances_[0]);
-        return solve_single_contact(contact(surfaces_[0]), &slip, grip_.pressure);
+        if (surfaces_.size() != 1) return std::nullopt;
+        std::array<CoulombResistance, kMostOfSurface> resistances;
+        for (std::size_t r = 0; r < count_; ++r) resistances[r] = resistance(resistances_[r]);
+        return solve_single_contact(contact(surfaces_[0]), std::span(resistances).first(count_), grip_.pressure);
     }
 
     void solve_problem() {

@@ -1,10 +1,11 @@
 /// \file
-/// Closed forms of contact with a single surface. They equal the general methods bit by bit (CoulombProblem,
-/// along_surfaces()), which take many times longer.
+/// Closed forms of contact with a single surface. Without resistance to rolling and spinning they equal the general
+/// methods bit by bit (CoulombProblem, along_surfaces()), which take many times longer.
 #pragma once
 
 #include <array>
 #include <optional>
+#include <span>
 
 #include "ricochet/core/vec3.h"
 #include "ricochet/response/contact_motion.h"
@@ -12,19 +13,24 @@
 
 namespace ricochet {
 
+/// Most resistances of one surface: to sliding, rolling and spinning.
+inline constexpr std::size_t kMostOfSurface = 3;
+
 /// Solution of the contact problem of one surface.
 struct SingleContactForces {
-    double normal = 0.0;                 ///< along the contact's direction, >= 0
-    std::array<double, 2> tangential{};  ///< along the directions of friction
-    MotionVector change{};               ///< change of the motion by both
+    double normal = 0.0;                                             ///< along the contact's direction, >= 0
+    std::array<std::array<double, 2>, kMostOfSurface> resistance{};  ///< along the directions of each resistance
+    MotionVector change{};                                           ///< change of the motion by all forces
 };
 
-/// Solves a contact without resistance (`slip` is null), or with friction. The normal force cancels the approach.
-/// Friction removes the slip as far as its bound allows. For a moving slip, it acts with its bound against the heading.
-/// `friction` is a factor on the bound, 0..1. Returns std::nullopt if the directions depend on each other, or rounding
-/// leaves more than kCoulombResidual.
+/// Solves a contact with at most kMostOfSurface resistances. The normal force cancels the approach. Each resistance
+/// removes its rate as far as its bound allows. If it is moving, it acts with its bound against the heading. `friction`
+/// is a factor on the bounds, 0..1. Returns std::nullopt if the normal force depends on a resistance, or if no
+/// closed form meets the conditions to kCoulombResidual. With sliding and rolling friction at their bounds, the closed
+/// forms need rates of nearly one direction.
 [[nodiscard]] std::optional<SingleContactForces> solve_single_contact(const CoulombContact& contact,
-                                                                      const CoulombResistance* slip, double friction);
+                                                                      std::span<const CoulombResistance> resistances,
+                                                                      double friction);
 
 /// Returns the motion nearest to the given one that is along a surface of unit normal n: along_surfaces() for one
 /// surface on which nothing sticks. The velocity must not be zero. `braked_from`: as in along_surfaces(), in m/s.

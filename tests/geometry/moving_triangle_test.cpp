@@ -114,7 +114,7 @@ TEST(MovingTriangle, IsHitByAPointAtTheTimeFromFiftyDigits) {
         EXPECT_LT(found->distance, 1e-12) << "case " << k;
         EXPECT_NEAR(found->barycentric.x + found->barycentric.y + found->barycentric.z, 1.0, 1e-12);
     }
-    EXPECT_GT(met, count / 20);
+    EXPECT_GE(met, count / 20);
 }
 
 // Contacts at time 1/2 are constructed with small integers. They include degenerate triangles, points on edges and

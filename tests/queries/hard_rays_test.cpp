@@ -113,7 +113,7 @@ TEST_P(HardRays, ResultsAgreeWithArbitraryPrecisionIntegers) {
     EXPECT_EQ(sum.count, 0U);
     EXPECT_EQ(sum.winding, 0U);
     EXPECT_GT(hits, count() / 4);
-    EXPECT_GT(along, count() / 100);
+    EXPECT_GE(along, count() / 100);
 }
 
 TEST_P(HardRays, ResultsDoNotDependOnThreadsOrOrder) {

@@ -259,7 +259,7 @@ TEST(CoulombProblem, JammedProblemsAreAbandonedEarly) {
         EXPECT_LE(problem->sweeps(), 30'000U);
     }
     EXPECT_GE(jammed, static_cast<std::size_t>(test::scaled(100)));
-    EXPECT_LE(sweeps, 4000 * jammed);
+    EXPECT_LE(sweeps, 4000 * jammed + 20'000);  // one of a few problems can take most of the sweeps
 }
 
 TEST(CoulombProblem, SolutionIsRepeatableAndScalesWithTheUnit) {

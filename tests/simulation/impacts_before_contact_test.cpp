@@ -147,5 +147,23 @@ TEST(ImpactsBeforeContact, ABallOnTwoRestingOnesReboundsAtAnyStep) {
     for (const double step : {1.0 / 30.0, 1.0 / 60.0, 1.0 / 240.0}) EXPECT_NEAR(height_at(step), fine, 1e-3) << step;
 }
 
+// A pebble rolls beside a stone, which lands on it and presses it onto the table. The pebble slips along the stone
+// meanwhile, far more than the two part. Their contact lasts nevertheless.
+TEST(ImpactsBeforeContact, ASlippingPairThatIsPressedTogetherIsPlanned) {
+    SimulationSetup setup = table_setup(2.9e-4, 5.8e-4, {.restitution = 0.3, .friction = 0.4}, 0.3, 0.4);
+    setup.materials[0].rolling_friction = 0.08;
+    setup.colliders[0].shape = PlaneShape{{0, 0, 0.02781112}, {0, 0, 1}};
+    setup.particles = {
+        particle_of({-0.011686844839981711, 0.007546579484554943, 0.028315335271536145},
+                    {0.004990423582775065, 0.01495401573776237, 0.0}, 0.0005042152715360878,
+                    {-27.694483155034913, 10.392711290727481, 37.68975030824293}),
+        particle_of({-0.010884708599714308, 0.005700564803915004, 0.029844060419758123},
+                    {-0.06038190538577723, 0.0009175170938948481, 0.015258550999596282}, 0.0020228606068750424,
+                    {-9.560923951023373, -21.073868312883032, -43.89483459668792})};
+    const Simulation simulation = run(std::move(setup));
+    EXPECT_GT(simulation.statistics().pair_impacts, 0U);
+    EXPECT_LT(simulation.statistics().bounces_per_step_max, 50U);
+}
+
 }  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -30,8 +30,11 @@ struct QuadMask {
 struct Quad {
     using Lanes = double __attribute__((vector_size(32)));
 
-    /// Unaligned lanes, to load from and store to any doubles in memory.
-    using Stored = double __attribute__((vector_size(32), aligned(8), may_alias));
+    /// Lanes in memory, to load from and store to any doubles. It is a packed structure, because Clang ignores a lower
+    /// alignment of a vector type, and would use instructions that fail on doubles beside multiples of 32 bytes.
+    struct __attribute__((packed, may_alias)) Stored {
+        Lanes lanes;
+    };
 
     Lanes lanes;
 };
@@ -39,13 +42,13 @@ struct Quad {
 /// Loads four consecutive doubles. Does not use memcpy(), because GCC splits the copy into two halves if AVX is not
 /// enabled yet at that stage of compilation.
 [[nodiscard]] RICOCHET_INLINE Quad load_quad(const double* from) {
-    return {*reinterpret_cast<const Quad::Stored*>(from)};
+    return {reinterpret_cast<const Quad::Stored*>(from)->lanes};
 }
 [[nodiscard]] RICOCHET_INLINE Quad load_quad(const std::array<float, 4>& from) {
     using Floats = float __attribute__((vector_size(16)));
     return {__builtin_convertvector(std::bit_cast<Floats>(from), Quad::Lanes)};
 }
-RICOCHET_INLINE void store(const Quad& a, double* to) { *reinterpret_cast<Quad::Stored*>(to) = a.lanes; }
+RICOCHET_INLINE void store(const Quad& a, double* to) { reinterpret_cast<Quad::Stored*>(to)->lanes = a.lanes; }
 
 /// Returns four equal numbers. A list of them would be built in two halves by GCC.
 [[nodiscard]] RICOCHET_INLINE Quad quad_of(double all) {

@@ -461,9 +461,11 @@ void EventIsland::count_repetition(const PairContact& contact, double time) {
     const IslandMember& b = (*members_)[contact.second];
     Repetition& first = repeated_[contact.first];
     Repetition& second = repeated_[contact.second];
-    const double apart = length(b.moving.state.velocity - a.moving.state.velocity) * (time - first.time);
+    const ForceInput& at_a = a.moving.state;
+    const ForceInput& at_b = b.moving.state;
+    const double approach = approach_of({at_a.position, at_a.velocity, {}}, {at_b.position, at_b.velocity, {}});
     const bool is_repeated = first.partner == contact.second && second.partner == contact.first &&
-                             apart <= kPressedOverlap * std::min(a.radius(), b.radius());
+                             approach * (time - first.time) <= kPressedOverlap * std::min(a.radius(), b.radius());
     const std::uint32_t count = is_repeated ? first.count + 1 : 1;
     first = {contact.second, count, time};
     second = {contact.first, count, time};

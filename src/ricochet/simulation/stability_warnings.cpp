@@ -263,7 +263,7 @@ private:
 std::optional<std::string> drag_warning(const SimulationSetup& setup) {
     std::vector<const Force*> drags;
     for (const auto& force : setup.forces) {
-        if (is_drag(*force)) drags.push_back(force.get());
+        if (force && is_drag(*force)) drags.push_back(force.get());
     }
     if (drags.empty() || setup.options.flow) return std::nullopt;
     const FastestDamped fastest(setup, drags);

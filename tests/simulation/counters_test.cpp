@@ -337,7 +337,7 @@ TEST(Counters, BalanceHoldsForSpheresThatMeet) {
         setup.options.particle_contacts->method = method;
         setup.counters = {counter_at({0, 0, 0.3}, 1e3, {0.1, 0, 1}), counter_at({0, 0, 0}, 1e3, {1, 0, 0})};
         setup.counters[1].name = "x";
-        expect_balance(std::move(setup), 20);
+        expect_balance(std::move(setup), static_cast<std::size_t>(test::scaled(20)));
     }
 }
 

@@ -37,7 +37,7 @@ void EventIsland::begin(std::vector<IslandMember>& members, MoveScratch& scratch
     partners_.assign(members.size(), 0);
     changed_at_.assign(members.size(), kStartOfStep);
     repeated_.assign(members.size(), {});
-    most_repeated_ = 0;
+    is_pressed_ = false;
     times_.reset(members.size());
     resumed_.resize(std::max(resumed_.size(), members.size()));
     for (std::size_t m = 0; m < members.size(); ++m) predict(m);
@@ -469,7 +469,9 @@ void EventIsland::count_repetition(const PairContact& contact, double time) {
     const std::uint32_t count = is_repeated ? first.count + 1 : 1;
     first = {contact.second, count, time};
     second = {contact.first, count, time};
-    most_repeated_ = std::max(most_repeated_, count);
+    const PairMaterial& law = materials_.of(a.material, b.material);
+    const double rebound = rebound_speed(law, response_.rules().settings.resting_speed, approach);
+    is_pressed_ = is_pressed_ || count > (rebound > 0.0 ? kMostRepeatedImpacts : kMostDeadImpacts);
 }
 
 /// Sets a member's motion after an impact. Its contacts with surfaces are found again.

@@ -145,7 +145,7 @@ private:
     void record_meeting(std::span<const PairContact> contacts, const std::vector<std::size_t>& changed,
                         const std::vector<PairBody>& before, const std::vector<PairBody>& after, double time);
     [[nodiscard]] bool exceeds(const ImpactLimit& limit) const {
-        return most_of_one_ > limit.of_each || (!limit.allows_sinking && most_repeated_ > kMostRepeatedImpacts);
+        return most_of_one_ > limit.of_each || (!limit.allows_sinking && is_pressed_);
     }
     void count_repetition(const PairContact& contact, double time);
     [[nodiscard]] std::optional<double> time_of_sinking() const;
@@ -168,7 +168,7 @@ private:
     std::vector<std::size_t> partners_;  // other member of each of these contacts
     std::vector<Repetition> repeated_;   // one per member
     std::uint32_t most_of_one_ = 0;      // largest number of impacts of one member
-    std::uint32_t most_repeated_ = 0;    // largest count of a repetition
+    bool is_pressed_ = false;            // forces press a pair together: its impacts repeat too often
     std::vector<Flight> resumed_;        // one per member, if a kick has acted in this step
     std::vector<PairImpactRecord> impacts_;
     std::vector<PairMeeting> meetings_;

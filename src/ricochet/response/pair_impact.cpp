@@ -23,12 +23,6 @@ Vec3 relative_velocity(const PairBody& a, const PairBody& b, const Vec3& normal)
     return (b.velocity - a.velocity) - cross(a.radius * a.spin + b.radius * b.spin, normal);
 }
 
-/// Returns the least separation speed after an impact, in m/s: 0 if a rebound with losses would be too slow.
-double rebound_of(const PairMaterial& law, double resting_speed, double approach) {
-    const double rebound = law.restitution * approach;
-    return law.restitution < 1.0 && rebound < resting_speed ? 0.0 : rebound;
-}
-
 /// Stops the relative rotation perpendicular to the normal, as far as the rolling moment suffices.
 void resist_rolling(const PairMaterial& law, PairBody& a, PairBody& b, const Vec3& normal, double impulse) {
     if (law.rolling_friction == 0.0) return;
@@ -66,7 +60,7 @@ public:
             PairContact& contact = contacts_[k];
             contact.normal = normalized(second(contact).position - first(contact).position);
             contact.approach = -dot(second(contact).velocity - first(contact).velocity, contact.normal);
-            targets_[k] = contact.approach > 0.0 ? rebound_of(law_of(contact), resting_speed, contact.approach)
+            targets_[k] = contact.approach > 0.0 ? rebound_speed(law_of(contact), resting_speed, contact.approach)
                                                  : contact.approach;
         }
     }
@@ -190,6 +184,11 @@ PairBody pair_body(const Vec3& position, const Vec3& velocity, const Vec3& spin,
 double approach_of(const PairBody& a, const PairBody& b) {
     const Vec3 along = b.position - a.position;
     return -dot(b.velocity - a.velocity, along) / length(along);
+}
+
+double rebound_speed(const PairMaterial& law, double resting_speed, double approach) {
+    const double rebound = law.restitution * approach;
+    return law.restitution < 1.0 && rebound < resting_speed ? 0.0 : rebound;
 }
 
 void resolve_pair_impacts(const PairMaterials& laws, double resting_speed, std::vector<PairBody>& bodies,

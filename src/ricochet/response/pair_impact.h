@@ -37,6 +37,8 @@ struct PairContact {
 
 /// Returns the speed, in m/s, at which two bodies approach along the line of their centres. Negative if they separate.
 [[nodiscard]] double approach_of(const PairBody& a, const PairBody& b);
+/// Returns the least separation speed after an impact, in m/s: 0 if a rebound with losses would be too slow.
+[[nodiscard]] double rebound_speed(const PairMaterial& law, double resting_speed, double approach);
 
 /// Resolves all contacts at once. Along each normal, the bodies separate at least at the speed given by restitution,
 /// and no impulse pulls (Moreau). Friction acts against the slip and is at most mu times the normal impulse.

@@ -60,6 +60,9 @@ inline constexpr double kImpactSolved = 0x1p-54;
 /// lasts. Reason: only forces bring such a pair together again. Smaller: pairs in a tight rack may count as lasting
 /// contacts. Larger: elastic spheres that forces press together take more time.
 inline constexpr std::uint32_t kMostRepeatedImpacts = 32;
+/// The same number for impacts without a rebound. Reason: after such an impact nothing but a force or a third sphere
+/// moves the pair. Smaller: a third sphere may be the cause. Larger: each landing under a load makes more impacts.
+inline constexpr std::uint32_t kMostDeadImpacts = 3;
 
 /// Expected displacement of a sphere by a neighbour, as a part of the longest path of that neighbour. It extends the
 /// search for contacts. Smaller: contact islands find further contacts only in a second plan. Larger: more candidates.

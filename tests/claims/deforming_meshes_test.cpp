@@ -74,7 +74,7 @@ TEST(ABreathingSphere, KeepsParticlesThatStartInside) {
             }
             EXPECT_EQ(outside, 0) << radius << " " << restitution;
             expect_sound(simulation);
-            EXPECT_GT(simulation.statistics().contacts, simulation.statistics().emitted);
+            EXPECT_GE(simulation.statistics().contacts, simulation.statistics().emitted);
         }
     }
 }

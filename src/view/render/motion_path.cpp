@@ -38,9 +38,9 @@ Vec3 position_on_path(std::span<const PathNode> nodes, double time) {
     return between(before, *next, time);
 }
 
-std::vector<PathPoint> path_points(std::span<const PathNode> nodes, double from, double to, double sagitta) {
+std::vector<MotionPathPoint> path_points(std::span<const PathNode> nodes, double from, double to, double sagitta) {
     constexpr double kMostPieces = 64.0;
-    std::vector<PathPoint> points{{from, position_on_path(nodes, from)}};
+    std::vector<MotionPathPoint> points{{from, position_on_path(nodes, from)}};
     for (std::size_t k = 0; k <= nodes.size(); ++k) {
         const double begin = k == 0 ? from : std::max(from, nodes[k - 1].time);
         const double end = k == nodes.size() ? to : std::min(to, nodes[k].time);

@@ -25,7 +25,7 @@ struct PathNode {
 [[nodiscard]] Vec3 position_on_path(std::span<const PathNode> nodes, double time);
 
 /// Point of a path, and its time.
-struct PathPoint {
+struct MotionPathPoint {
     double time = 0.0;  ///< s
     Vec3 position;      ///< m
 };
@@ -33,7 +33,7 @@ struct PathPoint {
 /// Returns the path from `from` to the later time `to` as points. The points contain both ends and every node between
 /// them. More points between two nodes limit the distance of the path from the lines between the points to `sagitta`,
 /// in m. There are at most 64 lines between two nodes, even if the limit needs more.
-[[nodiscard]] std::vector<PathPoint> path_points(std::span<const PathNode> nodes, double from, double to,
+[[nodiscard]] std::vector<MotionPathPoint> path_points(std::span<const PathNode> nodes, double from, double to,
                                                  double sagitta);
 
 }  // namespace ricochet

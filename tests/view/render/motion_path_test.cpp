@@ -34,7 +34,7 @@ TEST(MotionPath, HasItsCornerAtTheImpact) {
                                       node(2.0 * hit, {2.0 * hit, 0, 1}, {1, 0, 0})};
     const auto points = path_points(nodes, 0.0, 2.0 * hit, 1e-3);
     EXPECT_EQ(points.front().position, Vec3(0, 0, 1));
-    const auto at_impact = [&](const PathPoint& point) { return point.position == Vec3(hit, 0, 0); };
+    const auto at_impact = [&](const MotionPathPoint& point) { return point.position == Vec3(hit, 0, 0); };
     EXPECT_TRUE(std::any_of(points.begin(), points.end(), at_impact));
     for (const auto& [t, p] : points) {
         EXPECT_NEAR(t, p.x, 1e-15);

@@ -34,6 +34,6 @@ struct MotionPathPoint {
 /// them. More points between two nodes limit the distance of the path from the lines between the points to `sagitta`,
 /// in m. There are at most 64 lines between two nodes, even if the limit needs more.
 [[nodiscard]] std::vector<MotionPathPoint> path_points(std::span<const PathNode> nodes, double from, double to,
-                                                 double sagitta);
+                                                       double sagitta);
 
 }  // namespace ricochet

@@ -84,7 +84,7 @@ TEST(EveryImpulseOfASmoothWallThatMoves, IsOnePlusETimesItsApproach) {
                 ASSERT_LT(length(record.surface_velocity - w), 1e-12 * (1.0 + length(w))) << record.time;
                 hits += w != Vec3{} ? 1 : 0;
             }
-            EXPECT_GE(hits, simulation.particles().size() / 10);
+            EXPECT_TRUE(hits > simulation.particles().size() / 8 || test::scaled(400) < 400);
         }
     }
 }

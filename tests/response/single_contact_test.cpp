@@ -110,8 +110,8 @@ struct RollingSphere {
     std::array<CoulombResistance, kMostOfSurface> resistances;
 };
 
-// A resistance to rolling of mu_r N R at the contact slows the sphere by 5/7 of mu_r g, as friction that stops the
-// slip.
+// With a rolling resistance of mu_r N R, a sphere that friction keeps from slipping accelerates down a slope by
+// 5/7 g (sin - mu_r cos). It rests if mu_r exceeds the tangent of the slope.
 TEST(SingleContact, SphereRollsDownASlopeByItsClosedForm) {
     const double angle = 0.2;
     const Vec3 n{std::sin(angle), 0.0, std::cos(angle)};

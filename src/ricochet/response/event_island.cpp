@@ -464,14 +464,18 @@ void EventIsland::count_repetition(const PairContact& contact, double time) {
     const ForceInput& at_a = a.moving.state;
     const ForceInput& at_b = b.moving.state;
     const double approach = approach_of({at_a.position, at_a.velocity, {}}, {at_b.position, at_b.velocity, {}});
-    const bool is_repeated = first.partner == contact.second && second.partner == contact.first &&
-                             approach * (time - first.time) <= kPressedOverlap * std::min(a.radius(), b.radius());
+    // Spheres with the same centre have no approach. They do not part.
+    const bool has_parted =
+        std::fabs(approach) * (time - first.time) > kPressedOverlap * std::min(a.radius(), b.radius());
+    const bool is_repeated = first.partner == contact.second && second.partner == contact.first && !has_parted;
     const std::uint32_t count = is_repeated ? first.count + 1 : 1;
     first = {contact.second, count, time};
     second = {contact.first, count, time};
     const PairMaterial& law = materials_.of(a.material, b.material);
-    const double rebound = rebound_speed(law, response_.rules().settings.resting_speed, approach);
-    is_pressed_ = is_pressed_ || count > (rebound > 0.0 ? kMostRepeatedImpacts : kMostDeadImpacts);
+    // Without losses there is always a rebound. The sign of a slow approach is only rounding.
+    const bool rebounds =
+        law.restitution == 1.0 || rebound_speed(law, response_.rules().settings.resting_speed, approach) > 0.0;
+    is_pressed_ = is_pressed_ || count > (rebounds ? kMostRepeatedImpacts : kMostDeadImpacts);
 }
 
 /// Sets a member's motion after an impact. Its contacts with surfaces are found again.

@@ -270,7 +270,8 @@ TEST(BouncingSpringsEnergy, DriftsWithRungeKuttaMethodsAsWithoutBounces) {
         IntegratorKind kind;
         double time_step;
     };
-    for (const auto& [kind, time_step] : {Case{IntegratorKind::rk4, 0.005}, Case{IntegratorKind::midpoint, 0.001}}) {
+    for (const auto& [kind, time_step] :
+         test::chosen_cases<Case>({{IntegratorKind::rk4, 0.005}, {IntegratorKind::midpoint, 0.001}}, 2)) {
         const EnergyCourse bouncing = energy_course(hot_chains(0, true), kind, time_step, 4.0);
         const EnergyCourse free = energy_course(hot_chains(0, false), kind, time_step, 4.0);
         EXPECT_GT(bouncing.contacts, 1000U);

@@ -277,7 +277,7 @@ TEST(RenderCommand, AFilmOnAFullDiskEndsWithOneLineAndWithoutAFile) {
     if (std::system("command -v ffmpeg > /dev/null") != 0) GTEST_SKIP() << "ffmpeg is not installed";
     const RunFolderFiles files;
     const std::vector<std::string> film{"render",  files.path(""), "--output",  files.path("film.mp4"),
-                                        "--size",  "320x240",      "--samples", "1",
+                                        "--size",  "160x120",      "--samples", "1",
                                         "--quiet", "--threads",    "1"};
     ASSERT_EQ(run_ricochet(film).exit_code, 0);
     const int whole = static_cast<int>(files.folder.read("film.mp4").size() / 1024);

@@ -23,7 +23,7 @@ using testing::Triangle;
 constexpr std::uint64_t kSeed = 20240612;
 const auto kCases = static_cast<std::uint64_t>(test::case_factor(20) * 250);
 /// Number of cases with a reference in a hundred digits.
-const auto kOracleCases = static_cast<std::uint64_t>(test::case_factor(20) * std::max(50, test::scaled(250)));
+const auto kOracleCases = static_cast<std::uint64_t>(test::case_factor(50) * std::max(50, test::scaled(100)));
 
 struct SphereCase {
     Triangle triangle;

@@ -12,6 +12,7 @@
 #include "lab/bench/case_run.h"
 #include "lab/bench/small_cases.h"
 #include "ricochet/geometry/sweep/closest_point.h"
+#include "support/counts.h"
 
 namespace ricochet::bench {
 namespace RICOCHET_FILE {
@@ -98,7 +99,7 @@ TEST(BenchCases, AllRunAsSmallCopies) {
 TEST(BenchCases, CollidingSpheresStartWithoutOverlaps) {
     for (const Case& full : cases_of("pairs")) {
         SCOPED_TRACE(full.name);
-        const Case c = small_copy(full, 400, 2000);
+        const Case c = small_copy(full, test::is_long_run() ? 400 : 150, 2000);
         const auto mesh = make_mesh(c);
         const std::vector<Particle> particles = make_particles(c, *mesh);
         for (std::size_t i = 0; i < particles.size(); ++i) {

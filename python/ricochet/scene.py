@@ -1156,6 +1156,18 @@ class Material(Thing):
     diffuse: Accommodation: fraction of the impacts that reflect by the cosine law. Default: 0.
     wall_temperature: Temperature of the wall. Diffuse reflections leave with its thermal speeds. Unit: K.
     absorption: Fraction of the impacts that remove the particle. Default: 0.
+    tangential_restitution: Share of the slip velocity that a sticking impact reverses (Walton's third parameter).
+        Needs friction. Default: 0.
+    restitution_speed: Approach speed above which the restitution falls as a power of the approach speed. Unit: m/s.
+    restitution_exponent: The restitution is proportional to (approach speed)^-exponent above `restitution_speed`.
+        Default: 0.25.
+    static_friction: Coulomb coefficient of a contact that sticks, at least `friction`. The contact then slips with
+        `friction`.
+    tangential_factor: Factor of each impact on the tangential velocity of the centre, for lumped masses (rockfall).
+        The spin does not change. Default: 1.
+    impact_table: Coefficients by impact speed and angle, in place of `restitution` and `restitution_speed`. The
+        rows are a grid: the same angles at each speed, in ascending order, first by speed. Values between rows are
+        linear in speed and angle, and constant outside.
     surface_motion: Motion of the surface material.
     """
 
@@ -1189,6 +1201,10 @@ class PairOfMaterials(Thing):
     restitution: Separation speed divided by approach speed, along the normal.
     friction: Coulomb coefficient between spheres.
     rolling_friction: Moment that resists relative rotation, divided by reduced radius times normal impulse.
+    tangential_restitution: Share of the slip velocity that a sticking impact reverses (Walton's third parameter).
+        Needs friction.
+    restitution_speed: Approach speed above which the restitution falls as a power of the approach speed. Unit: m/s.
+    restitution_exponent: The restitution is proportional to (approach speed)^-exponent above `restitution_speed`.
     """
 
 
@@ -1217,6 +1233,11 @@ class ParticleContacts(Thing):
     friction: Coulomb coefficient between spheres. Default: 0.
     rolling_friction: Moment that resists relative rotation, divided by reduced radius times normal impulse.
         Default: 0.
+    tangential_restitution: Share of the slip velocity that a sticking impact reverses (Walton's third parameter).
+        Needs friction. Default: 0.
+    restitution_speed: Approach speed above which the restitution falls as a power of the approach speed. Unit: m/s.
+    restitution_exponent: The restitution is proportional to (approach speed)^-exponent above `restitution_speed`.
+        Default: 0.25.
     method: Method that resolves contacts between spheres. Default: "auto".
     impact_budget: Largest number of impacts of one sphere on others in one step. If a sphere spends the budget, its
         contacts are computed at once; with the method `events` it stops for the rest of the step, and the omitted
@@ -1312,6 +1333,17 @@ class Rotation(Thing):
     """
 
 
+class RowOfAnImpactTable(Thing):
+    """Coefficients of impacts at one speed and angle.
+
+    speed: Impact speed, relative to the surface. Unit: m/s. Default: 0.
+    angle: Angle of impact, from the normal. Unit: degrees. Default: 0.
+    restitution: Restitution at this speed and angle. Required.
+    tangential_restitution: Tangential restitution at this speed and angle.
+    tangential_factor: Tangential factor at this speed and angle.
+    """
+
+
 class ScaleCurve(Thing):
     """Scale factors over time: a curve whose values are numbers or [x, y, z], all above 0.
 
@@ -1366,6 +1398,10 @@ class SphereMaterial(Thing):
     restitution: Separation speed divided by approach speed, along the normal.
     friction: Coulomb coefficient between spheres.
     rolling_friction: Moment that resists relative rotation, divided by reduced radius times normal impulse.
+    tangential_restitution: Share of the slip velocity that a sticking impact reverses (Walton's third parameter).
+        Needs friction.
+    restitution_speed: Approach speed above which the restitution falls as a power of the approach speed. Unit: m/s.
+    restitution_exponent: The restitution is proportional to (approach speed)^-exponent above `restitution_speed`.
     """
 
 

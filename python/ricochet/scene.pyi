@@ -955,6 +955,12 @@ class Material(Thing):
         diffuse: Optional[float] = ...,
         wall_temperature: Optional[float] = ...,
         absorption: Optional[float] = ...,
+        tangential_restitution: Optional[float] = ...,
+        restitution_speed: Optional[float] = ...,
+        restitution_exponent: Optional[float] = ...,
+        static_friction: Optional[float] = ...,
+        tangential_factor: Optional[float] = ...,
+        impact_table: Optional[Sequence[Any]] = ...,
         surface_motion: Any = ...,
     ) -> None: ...
 
@@ -986,6 +992,9 @@ class PairOfMaterials(Thing):
         restitution: Optional[float] = ...,
         friction: Optional[float] = ...,
         rolling_friction: Optional[float] = ...,
+        tangential_restitution: Optional[float] = ...,
+        restitution_speed: Optional[float] = ...,
+        restitution_exponent: Optional[float] = ...,
     ) -> None: ...
 
 class Particle(Thing):
@@ -1013,6 +1022,9 @@ class ParticleContacts(Thing):
         restitution: Optional[float] = ...,
         friction: Optional[float] = ...,
         rolling_friction: Optional[float] = ...,
+        tangential_restitution: Optional[float] = ...,
+        restitution_speed: Optional[float] = ...,
+        restitution_exponent: Optional[float] = ...,
         method: Optional[str] = ...,
         impact_budget: Optional[int] = ...,
         materials: Optional[Mapping[str, Any]] = ...,
@@ -1097,6 +1109,17 @@ class Rotation(Thing):
         degrees: float,
     ) -> None: ...
 
+class RowOfAnImpactTable(Thing):
+    def __init__(
+        self,
+        *,
+        speed: Optional[float] = ...,
+        angle: Optional[float] = ...,
+        restitution: float,
+        tangential_restitution: Optional[float] = ...,
+        tangential_factor: Optional[float] = ...,
+    ) -> None: ...
+
 class ScaleCurve(Thing):
     def __init__(
         self,
@@ -1144,6 +1167,9 @@ class SphereMaterial(Thing):
         restitution: Optional[float] = ...,
         friction: Optional[float] = ...,
         rolling_friction: Optional[float] = ...,
+        tangential_restitution: Optional[float] = ...,
+        restitution_speed: Optional[float] = ...,
+        restitution_exponent: Optional[float] = ...,
     ) -> None: ...
 
 class Spring(Thing):

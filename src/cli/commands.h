@@ -36,6 +36,9 @@ void add_run_command(cli::Command program, int& exit_code);
 /// `schema [--markdown]`: prints the scene format as JSON Schema for editors, or as Markdown for readers.
 void add_schema_command(cli::Command program, int& exit_code);
 
+/// `study FILE --output DIR`: runs one scene with many values of some keys. docs/studies.md describes it.
+void add_study_command(cli::Command program, int& exit_code);
+
 /// `view DIR|SCENE [--output FILE.html]`: writes one file that shows a run in a browser. A scene is simulated first.
 void add_view_command(cli::Command program, int& exit_code);
 

@@ -43,8 +43,9 @@ using AddCommand = void (*)(cli::Command program, int& exit_code);
 
 const std::vector<AddCommand>& commands() {
     static const std::vector<AddCommand> list = {
-        add_bench_command, add_check_command,  add_compare_command, add_export_command, add_info_command,
-        add_new_command,   add_render_command, add_run_command,     add_schema_command, add_view_command,
+        add_bench_command,  add_check_command, add_compare_command, add_export_command,
+        add_info_command,   add_new_command,   add_render_command,  add_run_command,
+        add_schema_command, add_study_command, add_view_command,
     };
     return list;
 }

@@ -46,6 +46,7 @@
 #include "ricochet/queries/mesh_queries.h"
 #include "ricochet/queries/placed_mesh.h"
 #include "ricochet/response/contact_record.h"
+#include "ricochet/response/impact_law.h"
 #include "ricochet/response/material.h"
 #include "ricochet/response/pair_record.h"
 #include "ricochet/response/settings.h"

@@ -168,8 +168,11 @@ void add_options(ByteChoices& choices, SimulationSetup& setup) {
     options.duration = options.time_step * static_cast<double>(kTinySteps);
     options.resting_speed = choices.one_of<double>({1e-3, 0.0, 0.05});
     options.bounce_budget = choices.one_of<std::uint32_t>({20, 1, 3});
-    // The global rollback repeats the step of all particles for each bounce.
-    if (options.rollback.global && options.response == ResponseKind::rollback) options.bounce_budget /= 4;
+    // The global rollback repeats the step of all particles for each bounce. Dormand-Prince divides it into many
+    // stages.
+    if (options.rollback.global && options.response == ResponseKind::rollback) {
+        options.bounce_budget /= options.integrator.kind == IntegratorKind::dormand_prince ? 20 : 4;
+    }
     options.bounce_budget = std::max<std::uint32_t>(1, options.bounce_budget);
     options.seed = choices.byte();
     options.max_depth = 2;

@@ -87,14 +87,19 @@ TEST(SettingsTable, SceneReaderAndLibraryRefuseTheSameValues) {
         return settings.pairs[0].material;
     };
     expect_refused_by_both("materials.steel", "material 0: ", material, kMaterialTable);
+    expect_refused_by_both("materials.steel", "material 0: ", material, kImpactLawTable<Material>);
+    expect_refused_by_both("materials.steel", "material 0: ", material, kSurfaceLawTable);
     expect_refused_by_both(
         "materials.steel.surface_motion", "material 0: surface_motion.",
         [&](S& s) -> SurfaceMotion& { return material(s).motion; }, kSurfaceMotionTable);
     expect_refused_by_both("particle_contacts", "particle_contacts: ", contacts,
                            kSphereContactTable<PairContactSettings>);
+    expect_refused_by_both("particle_contacts", "particle_contacts: ", contacts, kImpactLawTable<PairContactSettings>);
     expect_refused_by_both("particle_contacts", "particle_contacts: ", contacts, kPairBudgetTable);
     expect_refused_by_both("particle_contacts.materials.glass", "particle_contacts: ", pair,
                            kSphereContactTable<PairMaterial>);
+    expect_refused_by_both("particle_contacts.materials.glass", "particle_contacts: ", pair,
+                           kImpactLawTable<PairMaterial>);
     expect_refused_by_both(
         "simulation", "options: ", [](S & s) -> auto& { return s.options; }, kTimeTable);
     expect_refused_by_both(

@@ -37,12 +37,13 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
         {"compare", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io", "run"}},
         {"generators", {"core", "geometry"}},  // the library of the mesh generator
         {"bench", {"core", "geometry", "collision", "dynamics", "response", "simulation", "run", "generators"}},
+        {"study", {"core", "run", "compare"}},
         {"mpi", {"core"}},
         {"python",
          {"core", "geometry", "queries", "collision", "dynamics", "response", "simulation", "io", "inspect", "render"}},
         {"cli",
          {"core", "geometry", "queries", "collision", "dynamics", "response", "verify", "simulation", "io", "run",
-          "inspect", "render", "export", "page", "compare", "bench", "mpi"}},
+          "inspect", "render", "export", "page", "compare", "bench", "study", "mpi"}},
     };
     return table;
 }

@@ -12,7 +12,7 @@ namespace ricochet {
 namespace RICOCHET_FILE {
 
 Vec3 bounced(const Vec3& velocity, const Vec3& n, double restitution, double friction) {
-    return bounce({velocity, {}}, 0.0, n, restitution, friction).velocity;
+    return bounce({velocity, {}}, 0.0, n, {restitution, friction}).velocity;
 }
 
 TEST(Bounce, NormalPartIsReversedAndScaledByTheRestitution) {

@@ -51,7 +51,7 @@ TEST(ImpactProblem, OneSurfaceGivesABounce) {
         const double restitution = random.uniform();
         const ImpactSurface surface{normalized(n), restitution, 2.0 * random.uniform()};
         const Motion before{velocity, spin};
-        const Motion expected = bounce(before, radius, surface.normal, surface.restitution, surface.friction);
+        const Motion expected = bounce(before, radius, surface.normal, {surface.restitution, surface.friction});
         const ImpactResult found = solve_impact(before, radius, {&surface, 1});
         EXPECT_LT(length(found.after.velocity - expected.velocity), 1e-14);
         EXPECT_LT(length(found.after.spin - expected.spin), 1e-13);

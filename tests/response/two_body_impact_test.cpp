@@ -33,9 +33,9 @@ TEST(AnImpactOnABodyThatYields, BodyWithZeroInverseMassActsLikeAWall) {
                             radius > 0.0 ? Vec3{random.uniform(), random.uniform(), random.uniform()} : Vec3{}};
         const double e = random.uniform();
         const double mu = k % 3 == 0 ? 0.0 : random.uniform();
-        const DynamicSurface wall{{0, 0, 1}, e, mu, {}, Mobility{}};
+        const DynamicSurface wall{{0, 0, 1}, {e, mu}, {}, Mobility{}};
         const Motion found = bounce_off_dynamic(before, state, wall);
-        const Motion expected = bounce(before, radius, {0, 0, 1}, e, mu);
+        const Motion expected = bounce(before, radius, {0, 0, 1}, {e, mu});
         EXPECT_LT(length(found.velocity - expected.velocity), 1e-14);
         EXPECT_LT(length(found.spin - expected.spin), 1e-13);
     }
@@ -58,7 +58,7 @@ TEST(AnImpactOnABodyThatYields, EnergyNeverGrowsAndTheApproachIsReversed) {
             body.of_inertia = body.of_inertia + size * outer_product({any(), any(), any()});
         }
         const double e = random.uniform();
-        const DynamicSurface surface{n, e, 2.0 * random.uniform(), {any(), any(), any()}, body};
+        const DynamicSurface surface{n, {e, 2.0 * random.uniform()}, {any(), any(), any()}, body};
         const double approach = -dot(before.velocity - surface.velocity, n);
         const Motion after = bounce_off_dynamic(before, state, surface);
         if (approach <= 0.0) {
@@ -71,7 +71,7 @@ TEST(AnImpactOnABodyThatYields, EnergyNeverGrowsAndTheApproachIsReversed) {
         const Vec3 of_body = surface.velocity - body.change_at(where, impulse);
         EXPECT_NEAR(dot(after.velocity - of_body, n), e * approach, 1e-12 * (1.0 + length(of_body)));
         const double normal = dot(impulse, n);
-        EXPECT_LE(length(impulse - normal * n), surface.friction * normal * (1.0 + 1e-9) + 1e-15);
+        EXPECT_LE(length(impulse - normal * n), surface.law.friction * normal * (1.0 + 1e-9) + 1e-15);
     }
 }
 
@@ -82,7 +82,7 @@ Motion dropped_on_box(const Vec3& slip, double friction, double restitution = 0.
     box.of_mass = diagonal_matrix(1.0 / 3.0);
     box.of_inertia = SymmetricMatrix{1.0 / 0.11, 1.0 / 0.29, 1.0 / 0.34, 0, 0, 0};
     const ForceInput state{{0.35, 0.1, 0.15}, {}, 0.2, 0.05, 0.0};
-    const DynamicSurface surface{{0, 0, 1}, restitution, friction, {}, box};
+    const DynamicSurface surface{{0, 0, 1}, {restitution, friction}, {}, box};
     return bounce_off_dynamic({Vec3{0, 0, -3} + slip, {}}, state, surface);
 }
 
@@ -121,7 +121,7 @@ TEST(AnImpactOnABodyThatYields, FrictionOpposesTheSlipCausedByTheImpulse) {
     arm.of_mass = diagonal_matrix(0.0);
     arm.of_inertia = SymmetricMatrix{0, 1.0 / 0.2, 0, 0, 0, 0};  // turns about y
     const ForceInput state{{0.5, 0, 0.2}, {}, 0.3, 0.0, 0.0};
-    const DynamicSurface surface{{0, 0, 1}, 0.5, 0.05, {}, arm};
+    const DynamicSurface surface{{0, 0, 1}, {0.5, 0.05}, {}, arm};
     const Motion after = bounce_off_dynamic({{0, 0, -2}, {}}, state, surface);
     const Vec3 impulse = 0.3 * (after.velocity - Vec3{0, 0, -2});
     EXPECT_NEAR(std::fabs(impulse.x), 0.05 * impulse.z, 1e-15);

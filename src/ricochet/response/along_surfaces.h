@@ -34,6 +34,7 @@ struct SupportSurface {
     Vec3 slip_curvature{};
     Vec3 turning_curvature{};
     double spinning_curvature = 0.0;
+    double static_friction = 0.0;  ///< Coulomb coefficient of a contact that sticks; `friction` if that is larger
 };
 
 /// Kinds of relative motion at a surface that friction prevents.

@@ -23,6 +23,7 @@ struct Resistance {
     Vec3 rate;           ///< slip, or radius times angular velocity along the surface or about its normal, m/s
     double speed = 0.0;  ///< 0 if it is stuck
     Vec3 heading;        ///< unit, direction of the resisted motion; only if the speed is above 0
+    bool slips = false;  ///< the load exceeds the static friction, so the slip begins
 };
 
 bool& is_stuck(Stuck& stuck, Resistance::Kind kind) {
@@ -54,7 +55,8 @@ public:
          const StuckSurfaces& stuck)
         : motion_(motion), radius_(radius), a_(a), seen_(seen), surfaces_(surfaces), grip_(grip), duration_(duration) {
         find_resistances(stuck);
-        solve();
+        do solve();
+        while (lets_slip());
     }
 
     [[nodiscard]] ContactInterval interval() {
@@ -109,7 +111,7 @@ private:
         const auto add = [&](std::size_t surface, Kind kind, const Vec3& rate) {
             const double speed = length(rate);
             Resistance& added = resistances_[count_++];
-            added = {surface, kind, rate, 0.0, {}};
+            added = {surface, kind, rate, 0.0, {}, false};
             if (is_stuck(stuck[surface], kind) || !(speed > kSlowSlip * scale)) return;
             added.speed = speed;
             added.heading = rate / speed;
@@ -125,6 +127,19 @@ private:
             if (surface.rolling_friction > 0.0) add(k, Kind::turning, carried(radius_ * (spin - spinning)));
             if (surface.spinning_friction > 0.0) add(k, Kind::spinning, carried(radius_ * spinning));
         }
+    }
+
+    /// Marks the resistances whose static friction does not hold their load. Returns true if there are new ones.
+    [[nodiscard]] bool lets_slip() {
+        bool is_new = false;
+        for (Resistance& r : resistances()) {
+            const SupportSurface& surface = surfaces_[r.surface];
+            if (r.kind != Kind::slip || r.speed > 0.0 || r.slips) continue;
+            if (!(surface.static_friction > surface.friction)) continue;
+            r.slips = length(change_of(r)) > kSupportRounding * scale();
+            is_new = is_new || r.slips;
+        }
+        return is_new;
     }
 
     void solve() {
@@ -217,7 +232,9 @@ private:
         if (r.kind == Kind::spinning) {
             return spinning_resistance(contact, n, surface.spinning_friction / radius_, surface.spinning_curvature * n);
         }
-        return sliding_friction(contact, surface.normal, surface.friction, is_sphere(), a_ + surface.slip_curvature);
+        const bool slips = r.speed > 0.0 || r.slips;
+        const double friction = slips ? surface.friction : std::max(surface.friction, surface.static_friction);
+        return sliding_friction(contact, surface.normal, friction, is_sphere(), a_ + surface.slip_curvature);
     }
 
     /// Returns true if the particle rests: its centre does not move, and nothing changes its motion.

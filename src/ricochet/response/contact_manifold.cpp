@@ -180,6 +180,7 @@ ContactManifold::SupportList ContactManifold::supports(const SurfaceKinematics& 
                                                surfaces.velocity_of((*this)[k]),
                                                surfaces.angular_velocity_of(surfaces_[k]),
                                                material.drives() ? &material.motion : nullptr};
+        supports.surfaces[supports.count - 1].static_friction = material.sticking_friction();
     }
     return supports;
 }

@@ -76,26 +76,32 @@ Vec3 spin_change_by(const Vec3& velocity_change, const Vec3& n, double radius) {
     return radius > 0.0 ? (-kSphereSpinUp / radius) * cross(n, velocity_change) : Vec3{};
 }
 
-Motion bounce(const Motion& motion, double radius, const Vec3& n, double restitution, double friction) {
+Motion bounce(const Motion& motion, double radius, const Vec3& n, const ImpactLaw& law) {
     const double approach = -dot(motion.velocity, n);
     if (!(approach > 0.0)) return motion;
     Motion after = motion;
-    after.velocity += ((1.0 + restitution) * approach) * n;
-    if (friction > 0.0) {
+    after.velocity += ((1.0 + law.restitution) * approach) * n;
+    if (law.friction > 0.0) {
         const Vec3 slip = slip_velocity(motion, radius, n);
         const double speed = length(slip);
-        const double most = friction * (1.0 + restitution) * approach;
-        const double sticking = radius > 0.0 ? kSphereStick * speed : speed;
+        const double most = law.friction * (1.0 + law.restitution) * approach;
+        const double reversed = (1.0 + law.tangential_restitution) * speed;
+        const double sticking = radius > 0.0 ? kSphereStick * reversed : reversed;
         if (speed > 0.0) {
-            const Vec3 change = slip * (-std::min(most, sticking) / speed);
+            const double most_sticking = law.sticking_friction() * (1.0 + law.restitution) * approach;
+            const Vec3 change = slip * (-(sticking <= most_sticking ? sticking : std::min(most, sticking)) / speed);
             after.velocity += change;
             if (radius > 0.0) after.spin -= (kSphereSpinUp / radius) * cross(n, change);
         }
-    } else if (restitution == 1.0) {
+    } else if (law.restitution == 1.0) {
         // The rounded normal is not exactly of unit length, and its error would add up over many bounces. The products
         // are exact, so that the correction itself is not biased to one side.
         const DoubleDouble gained = squared_length(motion.velocity) - squared_length(after.velocity);
         after.velocity += (0.5 * gained.hi / length_squared(after.velocity)) * after.velocity;
+    }
+    if (law.tangential_factor < 1.0) {
+        const Vec3 along = after.velocity - dot(after.velocity, n) * n;
+        after.velocity -= (1.0 - law.tangential_factor) * along;
     }
     return after;
 }

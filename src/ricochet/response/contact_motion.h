@@ -7,6 +7,7 @@
 
 #include "ricochet/core/random.h"
 #include "ricochet/core/vec3.h"
+#include "ricochet/response/impact_law.h"
 
 namespace ricochet {
 
@@ -22,11 +23,12 @@ struct Motion {
 
 /// Returns the motion after an impact on a fixed wall of unit normal n. The normal velocity is reversed and scaled by
 /// the restitution (Newton). The contact sticks if the tangential impulse needed is at most friction times the normal
-/// impulse. Otherwise it slips (Coulomb). A motion that does not approach the wall (v . n >= 0) is returned unchanged.
-/// A point without losses (restitution 1, friction 0) keeps its speed to rounding over any number of bounces. Method:
-/// impulse-based contact of a solid sphere, e.g. S. F. Foerster et al., "Measurements of the collision properties of
-/// small spheres", Physics of Fluids 6, 1994.
-[[nodiscard]] Motion bounce(const Motion& motion, double radius, const Vec3& n, double restitution, double friction);
+/// impulse. Otherwise it slips (Coulomb). A sticking contact reverses the slip velocity, scaled by the tangential
+/// restitution (Walton). Finally the tangential velocity of the centre is scaled by the tangential factor. A motion
+/// that does not approach the wall (v . n >= 0) is returned unchanged. A point without losses (restitution 1, friction
+/// 0) keeps its speed to rounding over any number of bounces. Method: impulse-based contact of a solid sphere, e.g. S.
+/// F. Foerster et al., "Measurements of the collision properties of small spheres", Physics of Fluids 6, 1994.
+[[nodiscard]] Motion bounce(const Motion& motion, double radius, const Vec3& n, const ImpactLaw& law);
 
 /// Returns the change of a solid sphere's spin, in rad/s, by a velocity change, in m/s. The impulse acts at the contact
 /// on a surface of unit normal n. Zero for a point.

@@ -473,8 +473,8 @@ void EventIsland::count_repetition(const PairContact& contact, double time) {
     second = {contact.first, count, time};
     const PairMaterial& law = materials_.of(a.material, b.material);
     // Without losses there is always a rebound. The sign of a slow approach is only rounding.
-    const bool rebounds =
-        law.restitution == 1.0 || rebound_speed(law, response_.rules().settings.resting_speed, approach) > 0.0;
+    const bool rebounds = law.restitution_at(approach) == 1.0 ||
+                          rebound_speed(law, response_.rules().settings.resting_speed, approach) > 0.0;
     is_pressed_ = is_pressed_ || count > (rebounds ? kMostRepeatedImpacts : kMostDeadImpacts);
 }
 

@@ -18,22 +18,52 @@ public:
         for (std::size_t k = 0; k < surfaces_.size(); ++k) add(k);
     }
 
+    /// Solves the impact. Contacts that slip although they could stick get the friction of slip, in another solution.
     ImpactResult solve() {
+        ImpactResult result = solve_once();
+        for (std::size_t pass = 0; pass < count_ && lets_slip(result); ++pass) result = solve_once();
+        return slowed(result);
+    }
+
+private:
+    [[nodiscard]] ImpactResult solve_once() {
         const bool has_friction =
             std::ranges::any_of(surfaces_, [](const ImpactSurface& surface) { return surface.friction > 0.0; });
-        if (!has_friction || restitution_ == 0.0) return kept(whole(restitution_));
+        if (!has_friction || (restitution_ == 0.0 && !reverses_slip_)) return kept(whole(restitution_));
         if (const std::optional<ImpactResult> result = find(restitution_)) {
             if (!gains(*result)) return kept(*result);
         }
         return kept(repeated(whole(0.0)));
     }
 
-private:
+    /// Marks the contacts whose static friction did not suffice. Returns true if there are new ones.
+    [[nodiscard]] bool lets_slip(const ImpactResult& result) {
+        bool is_new = false;
+        for (std::size_t c = 0; c < count_; ++c) {
+            const ImpactSurface& surface = surfaces_[surface_of_[c]];
+            if (slips_[c] || !(surface.static_friction > surface.friction)) continue;
+            const Vec3& change = result.velocity_change[surface_of_[c]];
+            const double pressing = dot(change, surface.normal);
+            const double along = length(change - pressing * surface.normal);
+            // Friction at its limit has not stopped the slip. Either answer is right within rounding of the limit.
+            slips_[c] = along >= (1.0 - kCoulombResidual) * surface.static_friction * pressing && pressing > 0.0;
+            is_new = is_new || slips_[c];
+        }
+        return is_new;
+    }
+
+    [[nodiscard]] double friction_of(std::size_t c) const {
+        const ImpactSurface& surface = surfaces_[surface_of_[c]];
+        return slips_[c] ? surface.friction : std::max(surface.friction, surface.static_friction);
+    }
+
     /// Adds a surface. A surface with the same normal is replaced if its approach is clearly slower.
     void add(std::size_t surface) {
         const ImpactSurface& added = surfaces_[surface];
         if (!added.is_support && separation_speed(added) < 0.0)
             restitution_ = std::min(restitution_, added.restitution);
+        tangential_factor_ = std::min(tangential_factor_, added.tangential_factor);
+        reverses_slip_ = reverses_slip_ || added.tangential_restitution > 0.0;
         is_driven_ = is_driven_ || added.velocity != Vec3{} || added.angular_velocity != Vec3{};
         for (std::size_t c = 0; c < count_; ++c) {
             const ImpactSurface& known = surfaces_[surface_of_[c]];
@@ -50,7 +80,10 @@ private:
         return dot(before_.velocity, surface.normal) - surface.advance;
     }
 
-    void set_up(double restitution) {
+    enum class Slip { stops, reverses };
+
+    /// Sets up the equations. slip_end: effect of sufficient friction on the slip.
+    void set_up(double restitution, Slip slip_end = Slip::stops) {
         problem_.clear();
         for (std::size_t c = 0; c < count_; ++c) {
             const ImpactSurface& surface = surfaces_[surface_of_[c]];
@@ -60,9 +93,10 @@ private:
         for (std::size_t c = 0; c < count_; ++c) {
             const ImpactSurface& surface = surfaces_[surface_of_[c]];
             if (surface.friction == 0.0) continue;
-            const Vec3 slip = slip_velocity(before_, radius_, surface.normal) - surface.velocity;
+            Vec3 slip = slip_velocity(before_, radius_, surface.normal) - surface.velocity;
+            if (slip_end == Slip::reverses && !surface.is_support) slip *= 1.0 + surface.tangential_restitution;
             problem_.add(
-                sliding_friction(static_cast<std::uint32_t>(c), surface.normal, surface.friction, radius_ > 0.0, slip));
+                sliding_friction(static_cast<std::uint32_t>(c), surface.normal, friction_of(c), radius_ > 0.0, slip));
         }
         if (radius_ > 0.0) resist_turning();
     }
@@ -117,7 +151,7 @@ private:
 
     /// Returns the solution with full friction, if it is found quickly.
     [[nodiscard]] std::optional<ImpactResult> find(double restitution) {
-        set_up(restitution);
+        set_up(restitution, Slip::reverses);
         if (!problem_.solve(CoulombProblem::Effort::some)) return std::nullopt;
         return solution();
     }
@@ -176,13 +210,29 @@ private:
         return result;
     }
 
+    /// Scales the velocity that is tangential to all surfaces, relative to the first surface.
+    [[nodiscard]] ImpactResult slowed(ImpactResult result) const {
+        if (tangential_factor_ == 1.0 || count_ == 0) return result;
+        std::array<Vec3, ImpactResult::kMostSurfaces> normals;
+        for (std::size_t c = 0; c < count_; ++c) normals[c] = surfaces_[surface_of_[c]].normal;
+        const Vec3 along = along_all(result.after.velocity - surfaces_[surface_of_[0]].velocity,
+                                     std::span<const Vec3>(normals).first(count_));
+        result.slowing = (tangential_factor_ - 1.0) * along;
+        result.slowed_by = surface_of_[0];
+        result.after.velocity += result.slowing;
+        return result;
+    }
+
     const Motion& before_;
     double radius_;
     std::span<const ImpactSurface> surfaces_;
     double restitution_ = 1.0;
+    double tangential_factor_ = 1.0;
+    bool reverses_slip_ = false;
     bool is_driven_ = false;  // true if a surface moves
     std::size_t count_ = 0;   // number of different normals
     std::array<std::size_t, ImpactResult::kMostSurfaces> surface_of_{};
+    std::array<bool, ImpactResult::kMostSurfaces> slips_{};  // static friction does not suffice
     CoulombProblem problem_;
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 
 #include "ricochet/core/vec3.h"
@@ -27,6 +28,9 @@ struct ImpactSurface {
     double advance = 0.0;
     /// True in lasting contact. An approach speed is then a rounding error and causes no rebound of its own.
     bool is_support = false;
+    double tangential_restitution = 0.0;  ///< 0..1, see ImpactLaw
+    double tangential_factor = 1.0;       ///< 0..1, see ImpactLaw
+    double static_friction = 0.0;         ///< see ImpactLaw
 };
 
 /// Result of an impact.
@@ -36,6 +40,9 @@ struct ImpactResult {
     Motion after;
     /// Velocity change by each surface, in m/s (its impulse per unit mass), in the order of the surfaces.
     std::array<Vec3, kMostSurfaces> velocity_change{};
+    /// Velocity change by the tangential factor, in m/s, which acts at the centre, and the number of its surface.
+    Vec3 slowing{};
+    std::size_t slowed_by = 0;
 };
 
 /// Returns the motion after an impact of a point (radius 0) or solid sphere with surfaces that it touches, at most
@@ -44,13 +51,15 @@ struct ImpactResult {
 /// All surfaces use one restitution e: the smallest among the approached surfaces that do not support the particle. Let
 /// u- and u+ be the normal velocities before and after the impact. Then u+ + e u- >= 0, the impulses are >= 0, and one
 /// of the two is zero (Moreau's law). For a supporting surface, the first condition is u+ >= 0. Friction stops the slip
-/// if possible. Otherwise it acts against the remaining slip.
+/// if possible, and reverses it with the tangential restitution of the surface. Otherwise it acts against the remaining
+/// slip. A contact that slips after all has the friction of slip, other contacts the static one. Finally, the smallest
+/// tangential factor scales the part of the velocity that is tangential to all surfaces.
 ///
 /// In wedges in which friction can hold a particle, this law may have no solution, or one that adds energy. The
 /// impulses are then 1 + e times the impulses of the impact without rebound (Poisson's law with one e for all
 /// impulses). The normal velocities are the same as with Moreau's law, but slip that friction stops returns with e
-/// times its speed. Separate rebounds from one surface after another are not used, because they multiply energy in
-/// narrow wedges.
+/// times its speed, without tangential restitution. Separate rebounds from one surface after another are not used,
+/// because they multiply energy in narrow wedges.
 ///
 /// Poisson's law adds no energy. Proof with the impulses P and velocities u of the impact without rebound, and their
 /// matrix G: P u <= 0 and P u- = P u - P G P, so P (u+ + u-) = P ((1 + e) u + (1 - e) u-) <= 0. Source: J. J. Moreau,

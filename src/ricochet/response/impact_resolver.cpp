@@ -90,13 +90,20 @@ bool ImpactResolver::try_single(std::span<const ContactSurface> surfaces, const 
     return true;
 }
 
+/// Returns the coefficients of an impact on a surface. A landing without a rebound has only friction.
+ImpactLaw ImpactResolver::law_of(const ContactSurface& surface, Rebound rebound) const {
+    const Material& material = surfaces_.material_of(surface.surface);
+    if (rebound == Rebound::none) return {0.0, material.friction, 0.0, 1.0, material.sticking_friction()};
+    const double approach = std::max(0.0, -surfaces_.separation_speed(surface));
+    return material.at_impact(approach, material.has_impact_law() ? surfaces_.speed_along(surface) : 0.0);
+}
+
 /// Applies bounce() relative to the surface's motion, or the rules of random reflection and dynamic bodies.
 void ImpactResolver::apply_bounce(const ContactSurface& surface, Rebound rebound) {
     const Material& material = surfaces_.material_of(surface.surface);
-    const double approach = -surfaces_.separation_speed(surface);
-    const double restitution = rebound == Rebound::none ? 0.0 : material.restitution_at(approach);
+    const ImpactLaw law = law_of(surface, rebound);
     if (surfaces_.is_dynamic(surface.surface)) {
-        bounce_off_body(surface, material, restitution);
+        bounce_off_body(surface, law);
         return;
     }
     // The bounce is computed relative to the surface's material.
@@ -104,9 +111,8 @@ void ImpactResolver::apply_bounce(const ContactSurface& surface, Rebound rebound
     const bool is_driven = carried != Vec3{};
     Motion motion = particle_.motion();
     if (is_driven) motion.velocity -= carried;
-    motion = material.is_random()
-                 ? random_reflection(motion, surface, material, restitution)
-                 : bounce(motion, particle_.state.radius, surface.normal, restitution, material.friction);
+    motion = material.is_random() ? random_reflection(motion, surface, material, law)
+                                  : bounce(motion, particle_.state.radius, surface.normal, law);
     if (is_driven && !outcome_.is_absorbed()) motion.velocity += carried;
     particle_.set_motion(motion);
 }
@@ -114,7 +120,7 @@ void ImpactResolver::apply_bounce(const ContactSurface& surface, Rebound rebound
 /// Absorbs the particle, or reflects it diffusely or as a mirror, by the particle's own random numbers. Source: J. C.
 /// Maxwell, "On stresses in rarified gases", Phil. Trans. 170, 1879.
 Motion ImpactResolver::random_reflection(Motion motion, const ContactSurface& surface, const Material& material,
-                                         double restitution) {
+                                         const ImpactLaw& law) {
     RandomSequence random(rules_.settings.seed, kImpactStream, particle_.id, particle_.draws);
     if (material.absorption > 0.0 && random.uniform() < material.absorption) {
         outcome_.end = MoveEnd::absorbed;
@@ -127,18 +133,17 @@ Motion ImpactResolver::random_reflection(Motion motion, const ContactSurface& su
                                    std::sqrt(kBoltzmann * *material.wall_temperature / particle_.state.mass), random)
                 : length(motion.velocity) * cosine_direction(surface.normal, random);
     } else {
-        motion = bounce(motion, particle_.state.radius, surface.normal, restitution, material.friction);
+        motion = bounce(motion, particle_.state.radius, surface.normal, law);
     }
     particle_.draws = random.draws();
     return motion;
 }
 
-void ImpactResolver::bounce_off_body(const ContactSurface& surface, const Material& material, double restitution) {
+void ImpactResolver::bounce_off_body(const ContactSurface& surface, const ImpactLaw& law) {
     const ForceInput& state = particle_.state;
     const BodyId body = rules_.bodies.body_of(surface.surface);
     const Mobility mobility = rules_.bodies.mobility(body, state.time);
-    const DynamicSurface dynamic{surface.normal, restitution, material.friction, surfaces_.velocity_of(surface),
-                                 mobility};
+    const DynamicSurface dynamic{surface.normal, law, surfaces_.velocity_of(surface), mobility};
     const Motion after = bounce_off_dynamic({state.velocity, particle_.spin}, state, dynamic);
     const Vec3 impulse = state.mass * (particle_.state.velocity - after.velocity);
     particle_.set_motion(after);
@@ -206,18 +211,19 @@ std::span<const ContactSurface> ImpactResolver::foremost(std::span<const Contact
 }
 
 ImpactSurface ImpactResolver::in_problem(const ContactSurface& surface, Rebound rebound) const {
-    const Material& material = surfaces_.material_of(surface.surface);
-    const double speed = std::max(0.0, -surfaces_.separation_speed(surface));
-    const double restitution = rebound == Rebound::none ? 0.0 : material.restitution_at(speed);
+    const ImpactLaw law = law_of(surface, rebound);
     return {surface.normal,
-            restitution,
-            material.friction,
+            law.restitution,
+            law.friction,
             0.0,
             0.0,
             surfaces_.velocity_of(surface),
             {},
             surfaces_.surface_normal_speed(surface),
-            surface.is_support};
+            surface.is_support,
+            law.tangential_restitution,
+            law.tangential_factor,
+            law.static_friction};
 }
 
 /// Returns true if the particle approaches a closing surface at every velocity. Impulses would grow without bound.
@@ -243,6 +249,9 @@ void ImpactResolver::apply(const ImpactResult& result, std::span<const ContactSu
                                spin_change_by(result.velocity_change[k], met[k].normal, particle_.state.radius));
         if (pass > 0 && is_hit) ledger_.mark_as_repeated();
         if (is_hit) ledger_.log_contact(met[k], before);
+    }
+    if (result.slowing != Vec3{}) {
+        ledger_.record_impulse(met[result.slowed_by].surface, result.slowing, false, Vec3{});
     }
     particle_.set_motion(result.after);
 }
@@ -326,7 +335,8 @@ RecordedImpact ImpactResolver::impact_before(std::span<const ContactSurface> sur
                                    surface.normal,
                                    surfaces_.velocity_of(surface),
                                    {},
-                                   material.restitution,
+                                   material.nominal_restitution(std::max(0.0, -surfaces_.separation_speed(surface)),
+                                                                surfaces_.speed_along(surface)),
                                    material.restitution_threshold,
                                    surface.is_support && surfaces_.separation_speed(surface) <= rounding});
     }

@@ -71,10 +71,11 @@ private:
                                                            Foremost& chosen) const;
     [[nodiscard]] ImpactSurface in_problem(const ContactSurface& surface, Rebound rebound) const;
 
+    [[nodiscard]] ImpactLaw law_of(const ContactSurface& surface, Rebound rebound) const;
     void apply_bounce(const ContactSurface& surface, Rebound rebound);
-    void bounce_off_body(const ContactSurface& surface, const Material& material, double restitution);
+    void bounce_off_body(const ContactSurface& surface, const ImpactLaw& law);
     [[nodiscard]] Motion random_reflection(Motion motion, const ContactSurface& surface, const Material& material,
-                                           double restitution);
+                                           const ImpactLaw& law);
 
     void settle_on_supports(std::span<const ContactSurface> surfaces);
     void stop_approach(std::span<const ContactSurface> surfaces);

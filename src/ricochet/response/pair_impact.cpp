@@ -48,7 +48,8 @@ Vec3 friction_of(const PairMaterial& law, const PairBody& a, const PairBody& b, 
     if (speed == 0.0) return {};
     const double inverse = effective_inverse_mass(a, b) + a.inverse_inertia * a.radius * a.radius +
                            b.inverse_inertia * b.radius * b.radius;
-    return (-std::min(law.friction * impulse, share * speed / inverse) / speed) * slip;
+    const double sticking = share * (1.0 + law.tangential_restitution) * speed / inverse;
+    return (-std::min(law.friction * impulse, sticking) / speed) * slip;
 }
 
 class ImpactProblem {
@@ -187,8 +188,9 @@ double approach_of(const PairBody& a, const PairBody& b) {
 }
 
 double rebound_speed(const PairMaterial& law, double resting_speed, double approach) {
-    const double rebound = law.restitution * approach;
-    return law.restitution < 1.0 && rebound < resting_speed ? 0.0 : rebound;
+    const double restitution = law.restitution_at(approach);
+    const double rebound = restitution * approach;
+    return restitution < 1.0 && rebound < resting_speed ? 0.0 : rebound;
 }
 
 void resolve_pair_impacts(const PairMaterials& laws, double resting_speed, std::vector<PairBody>& bodies,

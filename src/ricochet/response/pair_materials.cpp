@@ -25,7 +25,8 @@ PairMaterials::PairMaterials(const PairContactSettings& settings)
         const std::size_t b = number_of(numbers, pair.second);
         table_[a * count_ + b] = table_[b * count_ + a] = pair.material;
     }
-    loses_energy_ = std::ranges::any_of(table_, [](const PairMaterial& pair) { return pair.restitution < 1.0; });
+    loses_energy_ = std::ranges::any_of(
+        table_, [](const PairMaterial& pair) { return pair.restitution < 1.0 || pair.restitution_speed.has_value(); });
 }
 
 }  // namespace ricochet

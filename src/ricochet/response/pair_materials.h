@@ -23,7 +23,9 @@ namespace ricochet {
 
 /// Returns the contact parameters of all pairs of materials that have none of their own.
 [[nodiscard]] inline PairMaterial material_of_all(const PairContactSettings& settings) {
-    return {settings.restitution, settings.friction, settings.rolling_friction};
+    return {settings.restitution,       settings.friction,
+            settings.rolling_friction,  settings.tangential_restitution,
+            settings.restitution_speed, settings.restitution_exponent};
 }
 
 /// Numbers of materials by name. The pairs of a thousand materials need a million look-ups.

@@ -11,6 +11,7 @@
 
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/integrator.h"
+#include "ricochet/response/impact_law.h"
 
 namespace ricochet {
 
@@ -58,9 +59,19 @@ enum class PairMethod {
 
 /// Parameters of a contact between two spheres.
 struct PairMaterial {
-    double restitution = 1.0;       ///< separation speed over approach speed along the normal, 0..1
-    double friction = 0.0;          ///< Coulomb coefficient, >= 0
-    double rolling_friction = 0.0;  ///< resisting moment / (reduced radius * normal impulse), >= 0
+    double restitution = 1.0;             ///< separation speed over approach speed along the normal, 0..1
+    double friction = 0.0;                ///< Coulomb coefficient, >= 0
+    double rolling_friction = 0.0;        ///< resisting moment / (reduced radius * normal impulse), >= 0
+    double tangential_restitution = 0.0;  ///< share of the slip that a sticking impact reverses, 0..1
+    /// Approach speed, in m/s, > 0, above which the restitution falls as a power of the approach speed.
+    std::optional<double> restitution_speed = std::nullopt;
+    double restitution_exponent = kElasticPlasticExponent;  ///< exponent of this power, 0..1
+
+    /// Returns the restitution at an approach speed, in m/s.
+    [[nodiscard]] double restitution_at(double approach) const {
+        return restitution_speed ? falling_restitution(restitution, restitution_speed, restitution_exponent, approach)
+                                 : restitution;
+    }
 };
 
 /// Contact parameters for spheres of two materials, in either order, or of one material if both names are equal.
@@ -80,6 +91,9 @@ struct PairContactSettings {
     double restitution = 1.0;
     double friction = 0.0;
     double rolling_friction = 0.0;
+    double tangential_restitution = 0.0;
+    std::optional<double> restitution_speed = std::nullopt;
+    double restitution_exponent = kElasticPlasticExponent;
     PairMethod method = PairMethod::automatic;
     std::uint32_t impact_budget = 1000;       ///< impacts on other spheres per particle and step, >= 1
     std::vector<std::string> materials = {};  ///< names; none: all spheres have the same material

@@ -15,7 +15,7 @@ inline constexpr Setting<SurfaceMotion> kSurfaceMotionTable[] = {
     {"center", &SurfaceMotion::center, kCoordinate, "m", "A point on the axis, in world coordinates."},
 };
 
-/// All members except the name and the motion, which has its own table.
+/// All members except the name, and those in tables of their own: the motion, and the laws of impacts.
 inline constexpr Setting<Material> kMaterialTable[] = {
     {"restitution", &Material::restitution, kFraction, "",
      "Rebound speed divided by approach speed, along the normal."},
@@ -34,6 +34,30 @@ inline constexpr Setting<Material> kMaterialTable[] = {
     {"absorption", &Material::absorption, kFraction, "", "Fraction of the impacts that remove the particle."},
 };
 
+/// How the coefficients of impacts depend on the slip and the speed, for Material, PairMaterial and
+/// PairContactSettings.
+template <class Struct>
+inline constexpr Setting<Struct> kImpactLawTable[] = {
+    {"tangential_restitution", &Struct::tangential_restitution, kFraction, "",
+     "Share of the slip velocity that a sticking impact reverses (Walton's third parameter). Needs friction."},
+    {"restitution_speed", &Struct::restitution_speed, kPositive, "m/s",
+     "Approach speed above which the restitution falls as a power of the approach speed.",
+     "the restitution does not fall"},
+    {"restitution_exponent", &Struct::restitution_exponent, kFraction, "",
+     "The restitution is proportional to (approach speed)^-exponent above `restitution_speed`.", "", false,
+     "restitution_speed"},
+};
+
+/// Laws of impacts that only surfaces have.
+inline constexpr Setting<Material> kSurfaceLawTable[] = {
+    {"static_friction", &Material::static_friction, kNotNegative, "",
+     "Coulomb coefficient of a contact that sticks, at least `friction`. The contact then slips with `friction`.",
+     "the same as `friction`"},
+    {"tangential_factor", &Material::tangential_factor, kFraction, "",
+     "Factor of each impact on the tangential velocity of the centre, for lumped masses (rockfall). The spin does not "
+     "change."},
+};
+
 /// Contact between two spheres, for PairMaterial and PairContactSettings, which have the same members.
 template <class Struct>
 inline constexpr Setting<Struct> kSphereContactTable[] = {
@@ -42,6 +66,17 @@ inline constexpr Setting<Struct> kSphereContactTable[] = {
     {"friction", &Struct::friction, kNotNegative, "", "Coulomb coefficient between spheres."},
     {"rolling_friction", &Struct::rolling_friction, kNotNegative, "",
      "Moment that resists relative rotation, divided by reduced radius times normal impulse."},
+};
+
+inline constexpr Setting<ImpactTableRow> kImpactTableRowTable[] = {
+    {"speed", &ImpactTableRow::speed, kNotNegative, "m/s", "Impact speed, relative to the surface."},
+    {"angle", &ImpactTableRow::angle, between(0.0, 90.0), "degrees", "Angle of impact, from the normal."},
+    {"restitution", &ImpactTableRow::restitution, kFraction, "", "Restitution at this speed and angle.", "",
+     kMustBeGiven},
+    {"tangential_restitution", &ImpactTableRow::tangential_restitution, kFraction, "",
+     "Tangential restitution at this speed and angle.", "the value of the material"},
+    {"tangential_factor", &ImpactTableRow::tangential_factor, kFraction, "",
+     "Tangential factor at this speed and angle.", "the value of the material"},
 };
 
 inline constexpr Setting<PairContactSettings> kPairBudgetTable[] = {

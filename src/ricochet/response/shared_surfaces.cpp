@@ -95,6 +95,7 @@ SupportSurface SharedSurfaces::constraint(const SharedSurface& touched, const Ve
                           material.spinning_friction,
                           relative - dot(relative, n) * n,
                           kinematics().angular_velocity_of(touched.surface.surface)};
+    result.static_friction = material.sticking_friction();
     if (deforms(touched)) {
         const CurvatureTerms terms = curvature_of(deforming(), state, touched.surface);
         result.curvature = terms.curvature;

@@ -32,7 +32,11 @@ ImpactSurface SurfaceKinematics::landing_on(const ContactSurface& surface) const
             material.spinning_friction,
             velocity_of(surface),
             angular_velocity_of(surface.surface),
-            surface_normal_speed(surface)};
+            surface_normal_speed(surface),
+            false,
+            0.0,
+            1.0,
+            material.sticking_friction()};
 }
 
 /// Returns the velocity of a body's point at the contact, plus that of the material relative to the body.

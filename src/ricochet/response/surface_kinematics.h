@@ -74,6 +74,11 @@ public:
     [[nodiscard]] double separation_speed(const ContactSurface& surface) const {
         return dot(particle_.state.velocity, surface.normal) - surface_normal_speed(surface);
     }
+    /// Returns the speed of the particle's centre along the surface, relative to the surface's material.
+    [[nodiscard]] double speed_along(const ContactSurface& surface) const {
+        const Vec3 relative = particle_.state.velocity - velocity_of(surface);
+        return length(relative - dot(relative, surface.normal) * surface.normal);
+    }
     /// Returns true if the particle approaches a surface that does not support it yet. On a supporting surface the
     /// normal speed is a rounding error of either sign, so the contact state decides.
     [[nodiscard]] bool is_approached(const ContactSurface& surface) const {

@@ -19,14 +19,16 @@ public:
           body_(surface.body),
           point_(state.position - state.radius * surface.normal),
           normal_(surface.normal),
-          friction_(surface.friction) {
+          friction_(surface.law.friction),
+          sticking_friction_(surface.law.sticking_friction()) {
         const Vec3 relative = before.velocity - surface.velocity;
         approach_ = -dot(relative, normal_);
-        wanted_ = (1.0 + surface.restitution) * approach_;
+        wanted_ = (1.0 + surface.law.restitution) * approach_;
         // Friction depends on the slip of the sphere's surface.
         slip_ = slip_velocity({relative, before.spin}, state.radius, normal_);
         const double speeds = length(before.velocity) + length(surface.velocity) + state.radius * length(before.spin);
         if (length(slip_) <= kSlipRounding * speeds) slip_ = {};  // a rounding error has no direction
+        opposed_ = (1.0 + surface.law.tangential_restitution) * slip_;
     }
 
     [[nodiscard]] double approach() const { return approach_; }
@@ -37,13 +39,13 @@ public:
     /// impulses.
     [[nodiscard]] Vec3 impulse() const {
         if (friction_ == 0.0) return impulse_with({}, {});
-        const Vec3 stop = impulse_for(wanted_ * normal_ - slip_);
+        const Vec3 stop = impulse_for(wanted_ * normal_ - opposed_);
         if (is_in_cone(stop) && !gains(stop)) return stop;
-        const double speed = length(slip_);
+        const double speed = length(opposed_);
         if (!(speed > 0.0)) return impulse_after({}, stop);
-        const Vec3 against = (-1.0 / speed) * slip_;
+        const Vec3 against = (-1.0 / speed) * opposed_;
         const Vec3 sliding = impulse_with({}, friction_ * against);
-        const bool turns_slip = dot(slip_ + change(sliding), against) > 0.0;
+        const bool turns_slip = dot(opposed_ + change(sliding), against) > 0.0;
         if (!turns_slip && dot(sliding, normal_) > 0.0 && !gains(sliding)) return sliding;
         if (!turns_slip) return most_of({}, against, friction_, [](const Vec3& /*impulse*/) { return true; });
         const Vec3 direction = normal_ + friction_ * against;
@@ -77,19 +79,19 @@ private:
             return most_of(given, supports, 1.0, [](const Vec3& /*impulse*/) { return true; });
         }
         const Vec3 smooth = impulse_with(given, {});
-        const Vec3 left = slip_ + change(smooth);
+        const Vec3 left = opposed_ + change(smooth);
         const Vec3 along = left - dot(left, normal_) * normal_;
         const double speed = length(along);
         if (!(speed > 0.0)) return smooth;
         const Vec3 against = (-1.0 / speed) * along;
         return most_of(given, against, friction_, [&](const Vec3& impulse) {
-            return dot(slip_ + change(impulse), against) <= 0.0;  // it does not reverse the slip
+            return dot(opposed_ + change(impulse), against) <= 0.0;  // it does not reverse the slip
         });
     }
 
     [[nodiscard]] bool is_in_cone(const Vec3& impulse) const {
         const double pressing = dot(impulse, normal_);
-        return pressing > 0.0 && length(impulse - pressing * normal_) <= friction_ * pressing;
+        return pressing > 0.0 && length(impulse - pressing * normal_) <= sticking_friction_ * pressing;
     }
 
     /// Returns the impulse, in N s, that reverses the approach: `given` plus a multiple of the normal plus `friction`.
@@ -123,10 +125,12 @@ private:
     const Mobility& body_;
     Vec3 point_;  // m, of the contact
     Vec3 normal_;
-    double friction_;
-    double approach_ = 0.0;  // m/s
-    double wanted_ = 0.0;    // m/s, required change along the normal
-    Vec3 slip_;              // m/s
+    double friction_;           // of slip
+    double sticking_friction_;  // of a contact that sticks
+    double approach_ = 0.0;     // m/s
+    double wanted_ = 0.0;       // m/s, required change along the normal
+    Vec3 slip_;                 // m/s
+    Vec3 opposed_;              // m/s, the change of slip that a sticking impact needs, reversed: slip and its rebound
 };
 
 }  // namespace

@@ -25,17 +25,21 @@ verify::ImpactAudit impact_audit_of(const PairParts& parts) {
     const ResponseRules& rules = parts.response.rules();
     verify::ImpactAudit audit{settings.restitution, settings.friction, settings.rolling_friction,
                               rules.settings.resting_speed, rules.forces.is_uniform() && !parts.coupled.is_active()};
+    audit.falls_from = settings.restitution_speed.value_or(0.0);
+    audit.falls_with = settings.restitution_exponent;
     const std::vector<std::string>& names = settings.materials;
     audit.materials = names.size();
-    audit.by_materials.assign(names.size() * names.size(),
-                              {settings.restitution, settings.friction, settings.rolling_friction});
+    audit.by_materials.assign(
+        names.size() * names.size(),
+        {settings.restitution, settings.friction, settings.rolling_friction, audit.falls_from, audit.falls_with});
     std::map<std::string_view, std::size_t> numbers;
     for (std::size_t k = 0; k < names.size(); ++k) numbers.emplace(names[k], k);
     for (const MaterialPair& pair : settings.pairs) {
         const std::size_t a = numbers.at(pair.first);
         const std::size_t b = numbers.at(pair.second);
-        const verify::ImpactAudit::Pair own{pair.material.restitution, pair.material.friction,
-                                            pair.material.rolling_friction};
+        const verify::ImpactAudit::Pair own{
+            pair.material.restitution, pair.material.friction, pair.material.rolling_friction,
+            pair.material.restitution_speed.value_or(0.0), pair.material.restitution_exponent};
         audit.by_materials[a * names.size() + b] = audit.by_materials[b * names.size() + a] = own;
     }
     return audit;

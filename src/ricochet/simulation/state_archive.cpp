@@ -41,12 +41,23 @@ void archive_statistics(Archive& a, SimulationStatistics& statistics) {
     std::memcpy(&statistics, bytes.data(), sizeof(statistics));
 }
 
+/// Adds the laws of impacts to a fingerprint, if they are in use. Other settings keep their fingerprint.
+template <class Struct>
+void add_impact_law(StateHash& hash, const Struct& law) {
+    if (law.tangential_restitution == 0.0 && !law.restitution_speed) return;
+    add_settings(hash, law, kImpactLawTable<Struct>);
+}
+
 void add_contact_settings(StateHash& hash, const PairContactSettings& settings) {
     const PairMaterials all(settings);
     add_settings(hash, material_of_all(settings), kSphereContactTable<PairMaterial>);
+    add_impact_law(hash, material_of_all(settings));
     add_numbers(hash, settings.method, settings.impact_budget);
     for (std::uint32_t a = 0; a < settings.materials.size(); ++a) {
-        for (std::uint32_t b = 0; b <= a; ++b) add_settings(hash, all.of(a, b), kSphereContactTable<PairMaterial>);
+        for (std::uint32_t b = 0; b <= a; ++b) {
+            add_settings(hash, all.of(a, b), kSphereContactTable<PairMaterial>);
+            add_impact_law(hash, all.of(a, b));
+        }
     }
 }
 
@@ -55,6 +66,10 @@ void add_materials(StateHash& hash, const std::vector<Material>& materials) {
     std::swap(table[1], table[2]);  // the order of saved states: friction, then the threshold
     for (const Material& material : materials) {
         add_settings(hash, material, table);
+        add_impact_law(hash, material);
+        if (material.tangential_factor < 1.0 || material.static_friction)
+            add_settings(hash, material, kSurfaceLawTable);
+        for (const ImpactTableRow& row : material.impact_table) add_settings(hash, row, kImpactTableRowTable);
         if (!material.motion.is_none()) add_settings(hash, material.motion, kSurfaceMotionTable);
     }
 }

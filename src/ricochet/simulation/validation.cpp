@@ -41,6 +41,20 @@ void validate(const SimulationOptions& options) {
 void validate(const Material& material, std::size_t number) {
     const Subject subject("material", number, material.name);
     subject.require_settings(material, kMaterialTable);
+    subject.require_settings(material, kImpactLawTable<Material>);
+    subject.require_settings(material, kSurfaceLawTable);
+    if (material.static_friction && !(*material.static_friction >= material.friction && material.friction > 0.0)) {
+        subject.refuse("static_friction", *material.static_friction, "at least the friction, which must be above 0");
+    }
+    for (const ImpactTableRow& row : material.impact_table) {
+        subject.require_settings(row, kImpactTableRowTable, "impact_table.");
+    }
+    if (!material.impact_table.empty() && !is_grid(material.impact_table)) {
+        subject.refuse("impact_table", "rows that are no grid", "the same angles at each speed, in ascending order");
+    }
+    if (!material.impact_table.empty() && material.restitution_speed) {
+        subject.refuse("restitution_speed", *material.restitution_speed, "none beside an impact_table");
+    }
     subject.require_settings(material.motion, kSurfaceMotionTable, "surface_motion.");
 }
 

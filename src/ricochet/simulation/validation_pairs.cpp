@@ -42,6 +42,7 @@ void validate_names(const PairContactSettings& contacts, const Subject& subject)
             if (!numbers.of(name)) subject.refuse("pairs", "\"" + name + "\"", "names of `materials`");
         }
         subject.require_settings(pair.material, kSphereContactTable<PairMaterial>);
+        subject.require_settings(pair.material, kImpactLawTable<PairMaterial>);
         const std::size_t first = *numbers.of(pair.first);
         const std::size_t second = *numbers.of(pair.second);
         if (pairs.insert(std::minmax(first, second)).second) continue;
@@ -146,6 +147,7 @@ void validate_particle_contacts(const SimulationSetup& setup) {
     const PairContactSettings& contacts = *setup.options.particle_contacts;
     const Subject subject("particle_contacts");
     subject.require_settings(contacts, kSphereContactTable<PairContactSettings>);
+    subject.require_settings(contacts, kImpactLawTable<PairContactSettings>);
     subject.require_settings(contacts, kPairBudgetTable);
     validate_names(contacts, subject);
     for (std::size_t k = 0; k < setup.particles.size(); ++k) {

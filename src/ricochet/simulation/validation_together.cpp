@@ -90,8 +90,9 @@ void validate_bodies(const SimulationSetup& setup) {
             if (collider.frame != name) continue;
             visit_materials(collider, [&](std::uint32_t number) {
                 const Material& material = setup.materials[number];
-                if (!material.is_random()) return;
-                subject.refuse("material", material.name, "one that neither absorbs nor reflects diffusely");
+                if (material.suits_bodies()) return;
+                subject.refuse("material", material.name,
+                               "one that neither absorbs nor reflects diffusely, without a tangential factor");
             });
         }
         const auto is_on_it = [&](const EmitterDescription& emitter) {
@@ -165,9 +166,22 @@ void validate_ranks(const SimulationSetup& setup) {
     if (setup.options.verify) refuse("verify", "one process must collect the list of violations");
 }
 
+/// Refuses laws of impacts beside the penalty response, whose contacts last.
+void validate_impact_laws(const SimulationSetup& setup) {
+    if (setup.options.response != ResponseKind::penalty) return;
+    for (std::size_t k = 0; k < setup.materials.size(); ++k) {
+        if (!setup.materials[k].needs_instant_impacts()) continue;
+        Subject("material", k, setup.materials[k].name)
+            .refuse("tangential_restitution", "a law for impacts without duration",
+                    "none (also no tangential_factor, static_friction, restitution_speed or impact_table) beside the "
+                    "response penalty");
+    }
+}
+
 }  // namespace
 
 void validate_together(const SimulationSetup& setup) {
+    validate_impact_laws(setup);
     validate_ranks(setup);
     validate_clouds(setup);
     validate_moving_colliders(setup);

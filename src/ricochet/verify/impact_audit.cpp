@@ -66,7 +66,8 @@ private:
     }
 
     [[nodiscard]] ImpactAudit::Pair law(const MetContact& contact) const {
-        if (rules_.materials == 0) return {rules_.restitution, rules_.friction, rules_.rolling_friction};
+        if (rules_.materials == 0)
+            return {rules_.restitution, rules_.friction, rules_.rolling_friction, rules_.falls_from, rules_.falls_with};
         return rules_.by_materials[first(contact).material * rules_.materials + second(contact).material];
     }
     template <class Holds>
@@ -106,6 +107,11 @@ private:
         return product(velocity(second(contact)) - velocity(first(contact)), normal(contact));
     }
 
+    [[nodiscard]] static Long restitution_of(const ImpactAudit::Pair& law, Long approach) {
+        if (law.falls_from == 0.0 || !(approach > law.falls_from)) return law.restitution;
+        return law.restitution * std::pow(law.falls_from / approach, static_cast<Long>(law.falls_with));
+    }
+
     [[nodiscard]] bool rubs() const {
         return !holds_for_all([](const ImpactAudit::Pair& pair) { return pair.friction == 0.0; });
     }
@@ -119,7 +125,7 @@ private:
     [[nodiscard]] bool rebounds_otherwise(const MetContact& contact) const {
         const Long approach = -departure(contact, false);
         const Long rounding = kPairBooks * speeds(contact);
-        const double restitution = law(contact).restitution;
+        const Long restitution = restitution_of(law(contact), approach);
         Long target = restitution * approach;
         const bool is_alone = meeting_.contacts.size() == 1;
         if (approach <= rounding || (!is_alone && rubs())) return false;
@@ -196,8 +202,9 @@ private:
         }
         const Long rounding = kPairBooks * scale;
         if (!(after - before <= rounding)) return true;
-        const bool keeps = !rubs() && !resists_rolling() &&
-                           holds_for_all([](const ImpactAudit::Pair& pair) { return pair.restitution == 1.0; });
+        const bool keeps = !rubs() && !resists_rolling() && holds_for_all([](const ImpactAudit::Pair& pair) {
+            return pair.restitution == 1.0 && pair.falls_from == 0.0;
+        });
         return keeps && !(before - after <= rounding);
     }
 

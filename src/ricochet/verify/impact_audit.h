@@ -44,9 +44,13 @@ struct ImpactAudit {
         double restitution = 1.0;
         double friction = 0.0;
         double rolling_friction = 0.0;
+        double falls_from = 0.0;   ///< in m/s; the restitution falls above this approach speed; 0: it does not fall
+        double falls_with = 0.25;  ///< exponent of this fall
     };
     std::size_t materials = 0;  ///< number of materials; 0: the members above apply to all spheres
     std::vector<Pair> by_materials = {};
+    double falls_from = 0.0;  ///< as in Pair, if the members above apply to all spheres
+    double falls_with = 0.25;
 };
 
 /// Returns true if the audit finds an error in the impact.

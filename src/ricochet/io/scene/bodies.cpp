@@ -287,12 +287,13 @@ void refuse_company(const SceneContext& context, const SimulationSetup& setup, c
         if (collider.frame != frame) continue;
         const Material* random = nullptr;
         visit_materials(collider, [&](std::uint32_t k) {
-            if (setup.materials[k].is_random()) random = &setup.materials[k];
+            if (!setup.materials[k].suits_bodies()) random = &setup.materials[k];
         });
         if (random == nullptr) continue;
-        context.error(view, fmt::format("the material \"{}\" of the collider \"{}\" absorbs or reflects diffusely, "
-                                        "expected none that does on a body that impulses move",
-                                        random->name, collider.name));
+        context.error(view,
+                      fmt::format("the material \"{}\" of the collider \"{}\" absorbs, reflects diffusely, or has a "
+                                  "tangential factor, expected none that does on a body that impulses move",
+                                  random->name, collider.name));
     }
 }
 

@@ -71,6 +71,13 @@ const ObjectSpec& surface_motion_spec() {
     return spec;
 }
 
+const ObjectSpec& impact_table_row_spec() {
+    static const ObjectSpec spec =
+        object<ImpactTableRow>("row of an impact table", "Coefficients of impacts at one speed and angle.",
+                               fields_of<ImpactTableRow>(kImpactTableRowTable));
+    return spec;
+}
+
 class ColliderBuilder {
 public:
     ColliderBuilder(SceneContext& context, SimulationSetup& setup, std::vector<FrameDescription>& frames)
@@ -98,6 +105,7 @@ private:
                 setup_.materials.back().motion = named.view.object("surface_motion").read<SurfaceMotion>();
                 warn_about_idle_motion(named.view, setup_.materials.back());
             }
+            check_impact_law(named.view, setup_.materials.back());
             setup_.materials.back().name = named.name;
         }
         used_.resize(setup_.materials.size(), false);
@@ -107,6 +115,32 @@ private:
         if (material.motion.is_none() || material.drives()) return;
         context_.warn(view, "surface_motion",
                       "nothing comes of it without friction, resistance to rolling or spinning, or diffuse reflection");
+    }
+
+    void check_impact_law(const ObjectView& view, const Material& material) {
+        if (!material.impact_table.empty() && !is_grid(material.impact_table)) {
+            context_.error(view, "impact_table",
+                           "the rows are no grid, expected the same angles at each speed, in ascending order, first by "
+                           "speed, then by angle");
+        }
+        if (!material.impact_table.empty() && material.restitution_speed) {
+            context_.error(view, "restitution_speed", "found beside an impact_table, expected one of them");
+        }
+        if (material.static_friction && !(*material.static_friction >= material.friction && material.friction > 0.0)) {
+            context_.error(view, "static_friction",
+                           fmt::format("found {:g}, expected at least the friction {:g}, which must be above 0",
+                                       *material.static_friction, material.friction));
+        }
+        if (material.tangential_restitution > 0.0 && material.friction == 0.0) {
+            context_.warn(view, "tangential_restitution", "nothing comes of it without friction");
+        }
+        if (setup_.options.response == ResponseKind::penalty && material.needs_instant_impacts()) {
+            context_.error(
+                view,
+                "its tangential restitution, tangential factor, static friction, restitution speed or impact "
+                "table does not go together with the response \"penalty\", whose contacts last: expected another "
+                "response");
+        }
     }
 
     // Returns the index of a collider's material. All colliders without a material share a perfect one, which is
@@ -264,11 +298,19 @@ private:
 }  // namespace
 
 const ObjectSpec& material_spec() {
-    static const ObjectSpec spec =
-        object("material", "Response of a surface to impacts and contacts.",
-               joined<Material>({fields_of<Material>(kMaterialTable),
-                                 {{"surface_motion", ValueType::object, "Motion of the surface material.",
-                                   Without{"the material is at rest"}, &surface_motion_spec()}}}));
+    static const ObjectSpec spec = object(
+        "material", "Response of a surface to impacts and contacts.",
+        joined<Material>({fields_of<Material>(kMaterialTable),
+                          fields_of<Material>(kImpactLawTable<Material>),
+                          fields_of<Material>(kSurfaceLawTable),
+                          {{"impact_table", &Material::impact_table,
+                            "Coefficients by impact speed and angle, in place of `restitution` and "
+                            "`restitution_speed`. The rows are a grid: the same angles at each speed, in "
+                            "ascending order, first by speed. Values between rows are linear in speed and angle, "
+                            "and constant outside.",
+                            &impact_table_row_spec()},
+                           {"surface_motion", ValueType::object, "Motion of the surface material.",
+                            Without{"the material is at rest"}, &surface_motion_spec()}}}));
     return spec;
 }
 

@@ -16,7 +16,9 @@ namespace ricochet::detail {
 namespace {
 
 Fields<PairMaterial> material_fields() {
-    return fields_of<PairMaterial>(kSphereContactTable<PairMaterial>, Without{"the value for all spheres"});
+    constexpr Without kOther{"the value for all spheres"};
+    return joined<PairMaterial>({fields_of<PairMaterial>(kSphereContactTable<PairMaterial>, kOther),
+                                 fields_of<PairMaterial>(kImpactLawTable<PairMaterial>, kOther)});
 }
 
 const ObjectSpec& own_material_spec() {
@@ -83,6 +85,7 @@ const ObjectSpec& particle_contacts_spec() {
         "particle contacts", "Contacts between spheres.",
         joined<P>(
             {fields_of<P>(kSphereContactTable<P>),
+             fields_of<P>(kImpactLawTable<P>),
              {{"method", &P::method, "Method that resolves contacts between spheres.",
                Choices{choice(PairMethod::automatic, "auto",
                               "as `contacts` if spheres press on each other or impacts follow each other closely, else "

@@ -121,7 +121,7 @@ void ContactIsland::add_pair(std::uint32_t first, std::uint32_t second) {
     contact.friction = law.friction;
     contact.rolling_friction = law.rolling_friction * a.radius * b.radius / (a.radius + b.radius);
     const double approach = -dot(a.velocity - b.velocity, contact.normal);
-    contact.restitution = rebound(law.restitution, approach);
+    contact.restitution = rebound(law.restitution_at(approach), approach);
     contact.most_parting = most_parting(std::max(a.pull, b.pull), std::min(a.radius, b.radius), -gap, approach);
     if (a.is_asleep != b.is_asleep) edges_of_sleep_.push_back(contacts_.size() - 1);
     add_key(ContactKey::of_pair(a.id, b.id));
@@ -156,8 +156,10 @@ void ContactIsland::add_wall(std::uint32_t index, const ContactIslandMember& mem
     contact.rolling_friction = material.rolling_friction * state.radius;
     contact.wall_velocity = wall.carried;
     carry(contact, wall, material, state);
-    const double approach = -dot(state.velocity - wall.carried, wall.normal);
-    contact.restitution = rebound(material.restitution_at(approach), approach);
+    const Vec3 relative = state.velocity - wall.carried;
+    const double approach = -dot(relative, wall.normal);
+    const double along = material.has_impact_law() ? length(relative + approach * wall.normal) : 0.0;
+    contact.restitution = rebound(material.restitution_at(approach, along), approach);
     contact.most_parting = most_parting(members_[index].pull, member.radius, -contact.gap, approach);
     add_key(ContactKey::of_wall(member.moving->id, wall.surface));
 }

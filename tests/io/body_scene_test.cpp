@@ -184,8 +184,14 @@ TEST(BodyScene, IncompatibleFeaturesAreRefused) {
         errors_of(scene_of(R"("mass": 1)",
                            R"({"name": "b", "type": "box", "size": [1, 1, 1], "frame": "wheel", "material": "felt"})",
                            "", R"(, "materials": {"felt": {"absorption": 0.5}})")),
-        (Lines{"frames.wheel.body: the material \"felt\" of the collider \"b\" absorbs or reflects diffusely, "
-               "expected none that does on a body that impulses move"}));
+        (Lines{"frames.wheel.body: the material \"felt\" of the collider \"b\" absorbs, reflects diffusely, or "
+               "has a tangential factor, expected none that does on a body that impulses move"}));
+    EXPECT_EQ(
+        errors_of(scene_of(R"("mass": 1)",
+                           R"({"name": "b", "type": "box", "size": [1, 1, 1], "frame": "wheel", "material": "rock"})",
+                           "", R"(, "materials": {"rock": {"tangential_factor": 0.5}})"))
+            .size(),
+        1U);
     EXPECT_EQ(errors_of(scene_of(R"("mass": 1)", "", "", R"(, "simulation": {"response": "penalty"})")),
               (Lines{"colliders[0].frame: the response \"penalty\" knows no colliders that move, expected none, or "
                      "\"exact\""}));

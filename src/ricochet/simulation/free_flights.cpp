@@ -63,11 +63,10 @@ void FreeFlights::advance_each(std::size_t begin, std::size_t stop, const TimeSp
     const std::optional<Vec3>& common = rules_.forces.common_acceleration();
     for (std::size_t i = begin; i < stop; ++i) {
         if (!schedule_.is_in_free_flight(i)) continue;
-        const FreeFlight flight(rules_.settings.integrator,
-                                common ? *common : rules_.forces.acceleration(store_.force_input(i, step.begin)),
-                                step.end - step.begin);
+        const Vec3 acceleration = common ? *common : rules_.forces.acceleration(store_.force_input(i, step.begin));
+        const FreeFlight flight(rules_.settings.integrator, acceleration, step.end - step.begin);
         const PhaseState end = flight.step(particles.position[i], particles.velocity[i]);
-        if (record != nullptr) report(i, piece_to(i, end, step), step, *record);
+        if (record != nullptr) report(i, piece_to(i, end, acceleration, step), step, *record);
         particles.position[i] = end.position;
         particles.velocity[i] = end.velocity;
     }
@@ -111,15 +110,20 @@ std::optional<Flight> FreeFlights::clear_flight(std::size_t i, const TimeSpan& s
 }
 
 /// Returns the path of a free flight of particle i over a step, which is not stored yet. It has the bits of a flight
-/// that made a query, so results that follow from it do not depend on the query schedule. end: the particle's state at
-/// the end.
-FlownPiece FreeFlights::piece_to(std::size_t i, const PhaseState& end, const TimeSpan& step) const {
+/// that made a query, so results that follow from it do not depend on the query schedule. acceleration: in m/s^2.
+/// end: the particle's state at the end.
+FlownPiece FreeFlights::piece_to(std::size_t i, const PhaseState& end, const Vec3& acceleration,
+                                 const TimeSpan& step) const {
+    const IntegratorKind kind = rules_.settings.integrator.kind;
+    const Vec3& from = store_.particles().position[i];
+    const Vec3& velocity = store_.particles().velocity[i];
     const double duration = step.end - step.begin;
-    const ForceInput state = store_.force_input(i, step.begin);
-    Path path = begin_flight(rules_.settings.integrator, rules_.forces, state, duration).path;
+    Path path = kicks_first(kind)                       ? line_path(from, end.velocity, duration)
+                : kind == IntegratorKind::forward_euler ? line_path(from, velocity, duration)
+                                                        : parabola_path(from, velocity, acceleration, duration);
     path.end = end.position;
     const double begin = (step.begin + duration) - duration;  // computed like the beginning of a queried flight
-    return {path, begin, duration, state.velocity, end.velocity, true};
+    return {path, begin, duration, velocity, end.velocity, true};
 }
 
 /// Reports a flight of particle i over a whole step that is not stored yet.

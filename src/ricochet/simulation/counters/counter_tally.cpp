@@ -61,8 +61,9 @@ void CounterTally::add_to_fingerprint(StateHash& hash) const {
 }
 
 const char* CounterTally::fault(double /*time*/) const {
-    const auto sound = [](const CounterTotals& totals) { return is_sound(totals); };
-    return std::ranges::all_of(totals_, sound) ? nullptr : "a counter with sums out of range";
+    const bool has_sound_sums = std::ranges::all_of(totals_, [](const CounterTotals& c) { return is_sound(c); });
+    const bool has_sound_visits = std::ranges::all_of(visits_, &Visits::is_sound);
+    return has_sound_sums && has_sound_visits ? nullptr : "a counter with sums or times out of range";
 }
 
 }  // namespace ricochet

@@ -1,5 +1,8 @@
 #include "ricochet/simulation/counters/visits.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace ricochet {
 
 bool Visits::pass(std::uint64_t particle) {
@@ -17,6 +20,10 @@ std::optional<double> Visits::leave(std::uint64_t particle) {
     const double time = entry->second;
     entered_.erase(entry);
     return time;
+}
+
+bool Visits::is_sound() const {
+    return std::ranges::all_of(entered_, [](const auto& entry) { return std::isfinite(entry.second); });
 }
 
 }  // namespace ricochet

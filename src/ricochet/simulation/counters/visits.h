@@ -23,6 +23,9 @@ public:
     /// not entered since the start of the run.
     [[nodiscard]] std::optional<double> leave(std::uint64_t particle);
 
+    /// Returns true if a run can have led to these visits.
+    [[nodiscard]] bool is_sound() const;
+
     /// Saves or restores the visits. a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a) {

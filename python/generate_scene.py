@@ -88,8 +88,12 @@ def things(schema):
             yield own, {}, definition
         for alternative in definition.get("oneOf", []):
             kind = alternative.get("properties", {}).get("type", {}).get("const")
-            if kind is not None:
-                yield camel(kind) + own, {"type": kind}, dict(alternative, of=definition.get("description", ""))
+            if kind is None:
+                continue
+            yield camel(kind) + own, {"type": kind}, dict(alternative, of=definition.get("description", ""))
+            if "type" not in alternative.get("required", []):  # the default type has a class without this key, too
+                properties = {key: value for key, value in alternative["properties"].items() if key != "type"}
+                yield own, {}, dict(alternative, properties=properties)
 
 
 def docstring(schema, keys):

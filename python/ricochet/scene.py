@@ -38,7 +38,7 @@ class Scene(Thing):
     attributes: User-defined values of particles, by name.
     reference_camera: Camera for emitter rates per screen area.
     bounds: Box outside which particles are retired.
-    counters: Disks that count the particles that pass them.
+    counters: Surfaces that count the particles that pass them.
     output: Files that a run writes.
     camera: Camera of pictures.
     picture: Light and surroundings of pictures.
@@ -327,15 +327,86 @@ class Convection(Thing):
     """
 
 
-class Counter(Thing):
-    """A disk at rest that counts the particles whose centres pass it. Particles do not feel it.
+class DiskCounter(Thing):
+    """A disk.
 
     name: Name of the counter, different from the names of other counters. Required.
+    histogram: Histograms of the passages, at most one for each quantity.
     center: Centre of the disk. Unit: m. Required.
-    normal: Direction that counts as forward, of any length. The disk itself belongs to the side that it points to.
-        Required.
+    normal: Direction that counts as forward, of any length. The surface itself belongs to the side that it points
+        to. Required.
     radius: Radius of the disk. The rim belongs to it. Unit: m. Required.
     """
+
+    _fixed = {"type": "disk"}
+
+
+class Counter(Thing):
+    """A disk.
+
+    name: Name of the counter, different from the names of other counters. Required.
+    histogram: Histograms of the passages, at most one for each quantity.
+    center: Centre of the disk. Unit: m. Required.
+    normal: Direction that counts as forward, of any length. The surface itself belongs to the side that it points
+        to. Required.
+    radius: Radius of the disk. The rim belongs to it. Unit: m. Required.
+    """
+
+
+class PlaneCounter(Thing):
+    """An infinite plane.
+
+    name: Name of the counter, different from the names of other counters. Required.
+    histogram: Histograms of the passages, at most one for each quantity.
+    center: A point on the plane. Unit: m. Required.
+    normal: Direction that counts as forward, of any length. The surface itself belongs to the side that it points
+        to. Required.
+    """
+
+    _fixed = {"type": "plane"}
+
+
+class RectangleCounter(Thing):
+    """A rectangle.
+
+    name: Name of the counter, different from the names of other counters. Required.
+    histogram: Histograms of the passages, at most one for each quantity.
+    center: Centre of the rectangle. Unit: m. Required.
+    normal: Direction that counts as forward, of any length. The surface itself belongs to the side that it points
+        to. Required.
+    along: Direction of its first side, of any length. Its part along the normal is ignored. Required.
+    size: Lengths of the sides, along `along` and across it. The rim belongs to the rectangle. Unit: m. Required.
+    """
+
+    _fixed = {"type": "rectangle"}
+
+
+class BoxCounter(Thing):
+    """A box with edges along the axes. Entering counts as forward, leaving as backward. The faces at the lower ends belong to the inside, the others do not.
+
+    name: Name of the counter, different from the names of other counters. Required.
+    histogram: Histograms of the passages, at most one for each quantity.
+    center: Centre of the box. Unit: m. Required.
+    size: Full edge lengths. Unit: m. Required.
+    """
+
+    _fixed = {"type": "box"}
+
+
+class MeshCounter(Thing):
+    """A triangle mesh from a file, open or closed. Passages from the front side, to which the normals point, count as forward. Entering a closed mesh with outward normals is thus forward.
+
+    name: Name of the counter, different from the names of other counters. Required.
+    histogram: Histograms of the passages, at most one for each quantity.
+    file: Mesh file: OBJ, PLY, STL, OFF or glTF (.gltf, .glb). Required.
+    up: Axis of the file that points up. In scenes it is z. With y, (x, y, z) is read as (x, -z, y), before the
+        scale.
+    position: Position of its origin. Scale and rotation are applied first. Unit: m. Default: [0, 0, 0].
+    rotation: Rotation about its origin.
+    scale: Scale factor, or one factor for each of its own axes. A negative factor mirrors. Default: 1.
+    """
+
+    _fixed = {"type": "mesh"}
 
 
 class Curve(Thing):
@@ -1129,6 +1200,15 @@ class Heat(Thing):
         particle. Default: 0.
     friction_fraction: Fraction of the energy lost by friction, in impacts and in contact, that heats the particle.
         Default: 0.
+    """
+
+
+class Histogram(Thing):
+    """Numbers of passages by the value of a quantity, for each direction.
+
+    quantity: Quantity of the passages. Required.
+    range: Lower and upper end of the bins, in the unit of the quantity. Required.
+    bins: Number of bins. All have the same width. Default: 20.
     """
 
 

@@ -265,14 +265,71 @@ class Convection(Thing):
         flow: Any = ...,
     ) -> None: ...
 
+class DiskCounter(Thing):
+    def __init__(
+        self,
+        *,
+        name: str,
+        histogram: Optional[Sequence[Any]] = ...,
+        center: Vector,
+        normal: Vector,
+        radius: float,
+    ) -> None: ...
+
 class Counter(Thing):
     def __init__(
         self,
         *,
         name: str,
+        histogram: Optional[Sequence[Any]] = ...,
         center: Vector,
         normal: Vector,
         radius: float,
+    ) -> None: ...
+
+class PlaneCounter(Thing):
+    def __init__(
+        self,
+        *,
+        name: str,
+        histogram: Optional[Sequence[Any]] = ...,
+        center: Vector,
+        normal: Vector,
+    ) -> None: ...
+
+class RectangleCounter(Thing):
+    def __init__(
+        self,
+        *,
+        name: str,
+        histogram: Optional[Sequence[Any]] = ...,
+        center: Vector,
+        normal: Vector,
+        along: Vector,
+        size: Vector,
+    ) -> None: ...
+
+class BoxCounter(Thing):
+    def __init__(
+        self,
+        *,
+        name: str,
+        histogram: Optional[Sequence[Any]] = ...,
+        center: Vector,
+        size: Vector,
+    ) -> None: ...
+
+class MeshCounter(Thing):
+    def __init__(
+        self,
+        *,
+        name: str,
+        histogram: Optional[Sequence[Any]] = ...,
+        file: Any,
+        up: Optional[str] = ...,
+        position: Optional[Vector] = ...,
+        rotation: Any = ...,
+        scale: Any = ...,
     ) -> None: ...
 
 class Curve(Thing):
@@ -931,6 +988,15 @@ class Heat(Thing):
         emissivity: Optional[float] = ...,
         impact_fraction: Optional[float] = ...,
         friction_fraction: Optional[float] = ...,
+    ) -> None: ...
+
+class Histogram(Thing):
+    def __init__(
+        self,
+        *,
+        quantity: str,
+        range: Vector,
+        bins: Optional[int] = ...,
     ) -> None: ...
 
 class KeyPose(Thing):

@@ -45,8 +45,22 @@ class Simulation(unittest.TestCase):
         gate = {"name": "gate", "center": [0, 0, 0.9], "normal": [0, 0, -1], "radius": 10}
         simulation = ricochet.Simulation(bouncing(counters=[gate]))
         simulation.run(until=0.2)  # the lower ball falls from 1 m to 0.8 m, the upper one from 2 m to 1.8 m
-        self.assertEqual(simulation.counters, [{"name": "gate", "forward": 1, "backward": 0,
-                                                "forward_mass": simulation.particles.mass[0], "backward_mass": 0.0}])
+        (counter,) = simulation.counters
+        self.assertEqual((counter["name"], counter["forward"], counter["backward"]), ("gate", 1, 0))
+        self.assertEqual(counter["forward_mass"], simulation.particles.mass[0])
+        speed = (2 * 9.81 * 0.1) ** 0.5
+        self.assertAlmostEqual(counter["forward_statistics"]["speed"]["mean"], speed)
+        self.assertAlmostEqual(counter["forward_statistics"]["first_time"], speed / 9.81)
+        self.assertIsNone(counter["backward_statistics"]["first_time"])
+        self.assertEqual(counter["transmission"]["probability"], 0.5)
+
+    def test_classes_of_counters_have_their_types(self):
+        disk = things.Counter(name="a", center=[0, 0, 0], normal=[0, 0, 1], radius=1)
+        self.assertNotIn("type", disk)
+        cell = things.BoxCounter(name="b", center=[0, 0, 1], size=[2, 2, 1])
+        self.assertEqual(cell["type"], "box")
+        simulation = ricochet.Simulation(bouncing(counters=[disk, cell]))
+        self.assertEqual(simulation.counters[1]["residence"], {"count": 0, "mean": None, "deviation": None})
 
     def test_steps_and_runs_give_the_same_bits(self):
         one, other = ricochet.Simulation(bouncing()), ricochet.Simulation(bouncing())

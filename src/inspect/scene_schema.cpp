@@ -115,6 +115,8 @@ Json value_schema(const KeySpec& key) {
                     {"minItems", 1}};
         case ValueType::vector:
             return vector_schema(key);
+        case ValueType::two_numbers:
+            return two_of(number_schema(key.range));
         case ValueType::scale:
             return scale_schema(key);
         case ValueType::pair:
@@ -161,7 +163,11 @@ Json object_schema(const ObjectSpec& spec, const Variant* variant) {
     Json needs = Json::object();
     if (variant != nullptr) {
         properties["type"] = {{"const", variant->name}};
-        required.push_back("type");
+        if (variant->name == spec.default_type) {
+            properties["type"]["default"] = variant->name;
+        } else {
+            required.push_back("type");
+        }
     }
     for (const KeySpec* key : keys_of(spec, variant)) {
         properties[std::string(key->name)] = key_schema(*key);
@@ -379,7 +385,9 @@ std::string nested_sections(const std::string& heading, const std::vector<KeySpe
 std::string object_section(const std::string& heading, const ObjectSpec& spec) {
     std::string text = fmt::format("\n## {}\n\n{}\n", heading, spec.description);
     if (!spec.variants.empty()) {
-        text += "The key `type` selects the kind.\n";
+        text += "The key `type` selects the kind.";
+        if (!spec.default_type.empty()) text += fmt::format(" Its default is `{}`.", spec.default_type);
+        text += "\n";
         if (!spec.keys.empty()) text += "\nKeys of every kind:\n";
     }
     if (!spec.keys.empty()) text += key_table(spec.keys);
@@ -418,6 +426,7 @@ std::string scene_reference() {
     text += object_section("rotation", detail::rotation_spec());
     text += object_section("motions of a frame (a list)", motion);
     text += object_section("motion of a collider (a list)", detail::key_pose_spec());
+    text += object_section("histogram of a counter (a list)", detail::histogram_spec());
     text += object_section("deformation of a mesh", detail::deformation_spec());
     text += object_section("cloud of an emitter", detail::cloud_spec());
     text += object_section("drawing of an emitter", detail::drawing_spec());

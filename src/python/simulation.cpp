@@ -17,6 +17,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/memory_limit.h"
 #include "ricochet/queries/mesh_queries.h"
+#include "run/counter_tables.h"
 
 namespace ricochet::python {
 namespace {
@@ -229,12 +230,9 @@ py::list bodies_of(const Handle& handle) {
 
 py::list counters_of(const Handle& handle) {
     return handle.read([](const Simulation& simulation) {
+        const py::object loads = py::module_::import("json").attr("loads");
         py::list list;
-        for (const CounterTotals& c : simulation.counters()) {
-            list.append(py::dict(py::arg("name") = c.name, py::arg("forward") = c.forward,
-                                 py::arg("backward") = c.backward, py::arg("forward_mass") = c.forward_mass,
-                                 py::arg("backward_mass") = c.backward_mass));
-        }
+        for (const CounterTotals& counter : simulation.counters()) list.append(loads(counter_json(counter)));
         return list;
     });
 }
@@ -348,8 +346,9 @@ void bind_state(py::class_<Handle>& type) {
         .def_property_readonly("bodies", &bodies_of,
                                "List with a dictionary for each dynamic body: position and motion, in SI units.")
         .def_property_readonly("counters", &counters_of,
-                               "List with a dictionary for each counter of the scene: name, passages forward and "
-                               "backward, and their masses in kg.")
+                               "List with a dictionary for each counter of the scene, with the fields of its entry in "
+                               "summary.json: passages forward and backward, masses in kg, statistics, transmission, "
+                               "first passage, residence and histograms.")
         .def("__len__",
              [](const Handle& handle) { return handle.read([](const Simulation& s) { return s.particles().size(); }); })
         .def("__repr__", [](const Handle& handle) {

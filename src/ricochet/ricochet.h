@@ -18,6 +18,7 @@
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/random.h"
 #include "ricochet/core/ranks.h"
+#include "ricochet/core/running_mean.h"
 #include "ricochet/core/segment.h"
 #include "ricochet/core/symmetric_matrix.h"
 #include "ricochet/core/transform.h"

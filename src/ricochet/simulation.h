@@ -66,7 +66,7 @@ struct SimulationSetup {
     std::optional<ReferenceCamera> reference_camera;  ///< camera for emission rates per screen area
     /// Processes that change the attribute `temperature`. Nothing: the attribute is constant.
     std::optional<HeatSettings> heat = std::nullopt;
-    std::vector<CounterDescription> counters = {};  ///< disks that count the particles passing through them
+    std::vector<CounterDescription> counters = {};  ///< surfaces that count the particles passing through them
     /// Processes that share the particles of the run, each with the same setup. Null: one process. See show_whole().
     std::shared_ptr<Ranks> ranks = {};
 };

@@ -24,7 +24,7 @@ namespace {
 
 /// Format number at the start of every checkpoint. Its last byte is the version of the layout. The file ends with its
 /// checksum.
-constexpr std::uint64_t kCheckpointFormat = 0x5249434f43484b38ULL;
+constexpr std::uint64_t kCheckpointFormat = 0x5249434f43484b39ULL;
 /// Format number at the start of every checkpoint part. The part also ends with its checksum.
 constexpr std::uint64_t kPartFormat = 0x5249434f50415230ULL;
 constexpr std::uint64_t kAnyLayout = ~std::uint64_t{0xFF};
@@ -45,6 +45,9 @@ void archive_checkpoint(Archive& a, Checkpoint& checkpoint) {
     a(loads.colliders), a(loads.bodies), a(loads.since);
     archive_entries(a, checkpoint.parts, [&](CheckpointPart& part) { a(part.file), a(part.checksum); });
     archive_entries(a, loads.totals, [&](ColliderTotals& t) { a(t.hits), a(t.impulse), a(t.moment), a(t.work); });
+    a(checkpoint.counters.text);
+    archive_entries(a, checkpoint.counters.counts,
+                    [&](CounterCounts& c) { a(c.forward), a(c.backward), a(c.forward_mass), a(c.backward_mass); });
 }
 
 /// Throws InputError if a series refers to anything but a file of a run. Reason: a resumed run writes the entries into

@@ -9,6 +9,7 @@
 
 #include "ricochet/io/vtk.h"
 #include "ricochet/simulation.h"
+#include "run/counter_tables.h"
 #include "run/load_tables.h"
 
 namespace ricochet {
@@ -31,6 +32,7 @@ struct Checkpoint {
     std::vector<PvdEntry> moving;         ///< files of moving colliders written so far
     LoadRows loads;                       ///< rows of the load tables
     std::vector<CheckpointPart> parts{};  ///< empty if the checkpoint itself contains the particles
+    CounterRows counters{};               ///< rows of the table of counters
 };
 
 /// Writes the checkpoint and the simulation's state. An older checkpoint stays until the new file is complete. Throws

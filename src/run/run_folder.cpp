@@ -160,10 +160,11 @@ bool is_run_file(std::string_view name) {
     return finished == kRunInfoFile || finished == kSummaryFile || finished == kCheckpointFile ||
            finished == kExtensionFile || finished == kParticleSeriesFile || finished == kColliderSeriesFile ||
            finished == kContactSeriesFile || finished == kMovingSeriesFile || finished == kColliderTableFile ||
-           finished == kBodyTableFile || is_picture_file(finished, kParticleSpriteFile) ||
-           is_picture_file(finished, kParticleMeshFile) || step_of_frame_file(finished) ||
-           step_of_frame_index(finished) || step_of_piece_file(finished) || set_of_checkpoint_part(finished) ||
-           step_of_contact_file(finished) || step_of_moving_file(finished) || index_of_collider_file(finished);
+           finished == kBodyTableFile || finished == kCounterTableFile || finished == kHistogramTableFile ||
+           is_picture_file(finished, kParticleSpriteFile) || is_picture_file(finished, kParticleMeshFile) ||
+           step_of_frame_file(finished) || step_of_frame_index(finished) || step_of_piece_file(finished) ||
+           set_of_checkpoint_part(finished) || step_of_contact_file(finished) || step_of_moving_file(finished) ||
+           index_of_collider_file(finished);
 }
 
 // Lock and marker of the folder while a run writes.

@@ -26,8 +26,10 @@ inline constexpr const char* kParticleSeriesFile = "particles.pvd";
 inline constexpr const char* kColliderSeriesFile = "colliders.pvd";
 inline constexpr const char* kContactSeriesFile = "contacts.pvd";
 inline constexpr const char* kMovingSeriesFile = "moving.pvd";
-inline constexpr const char* kColliderTableFile = "colliders.csv";  ///< loads on moving colliders
-inline constexpr const char* kBodyTableFile = "bodies.csv";         ///< motion of dynamic bodies
+inline constexpr const char* kColliderTableFile = "colliders.csv";            ///< loads on moving colliders
+inline constexpr const char* kBodyTableFile = "bodies.csv";                   ///< motion of dynamic bodies
+inline constexpr const char* kCounterTableFile = "counters.csv";              ///< passages of counters over time
+inline constexpr const char* kHistogramTableFile = "counter_histograms.csv";  ///< histograms of passages
 
 inline constexpr const char* kComparisonJsonFile = "compare.json";   ///< all results of a comparison
 inline constexpr const char* kComparisonTableFile = "compare.csv";   ///< one line for each response and time step

@@ -14,6 +14,7 @@
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
+#include "run/counter_tables.h"
 #include "run/load_tables.h"
 #include "run/picture_files.h"
 #include "run/regular_file.h"
@@ -234,14 +235,6 @@ namespace {
 /// Returns the share of impacts in the impulses, or null if the surfaces received no impulse.
 Json share_of(const ImpulseSizes& sizes) { return sizes.any() ? Json(sizes.share_of_impacts()) : Json(nullptr); }
 
-Json json_of(const CounterTotals& counter) {
-    return {{"name", counter.name},
-            {"forward", counter.forward},
-            {"backward", counter.backward},
-            {"forward_mass", counter.forward_mass},
-            {"backward_mass", counter.backward_mass}};
-}
-
 Json json_of(const GroupTotals& group) {
     return {{"name", group.name},
             {"triangles", group.triangles},
@@ -369,7 +362,9 @@ std::string summary_text(const RunSummary& summary) {
     json["colliders"] = Json::array();
     for (const ColliderSummary& collider : summary.colliders) json["colliders"].push_back(json_of(collider));
     for (const BodyState& body : summary.bodies) json["bodies"].push_back(json_of(body));
-    for (const CounterTotals& counter : summary.counters) json["counters"].push_back(json_of(counter));
+    for (const CounterTotals& counter : summary.counters) {
+        json["counters"].push_back(Json::parse(counter_json(counter)));
+    }
     // Names come from files and can contain invalid UTF-8. Such bytes are replaced, because an exception would lose the
     // summary.
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

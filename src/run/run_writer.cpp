@@ -105,7 +105,8 @@ RunWriter::RunWriter(std::filesystem::path folder, RunInfo info, const Simulatio
       output_seconds_(resumed ? resumed->output_seconds : 0.0),
       thread_(std::make_shared<WriterThread>(mode)),
       frames_(folder_, kParticleSeries, resumed ? resumed->frames : std::vector<PvdEntry>{}, thread_),
-      loads_(folder_, resumed ? resumed->loads : LoadRows{}) {
+      loads_(folder_, resumed ? resumed->loads : LoadRows{}),
+      counters_(folder_, resumed ? resumed->counters : CounterRows{}) {
     const SecondsTo clock(output_seconds_);
     if (resumed) last_frame_ = simulation.step_index();
     if (simulation.options().record_contacts) {
@@ -149,6 +150,7 @@ void RunWriter::write_frame(const Simulation& simulation) {
     }
     if (moving_) moving_->submit(simulation.step_index(), moving_collider_frame(simulation, region_));
     loads_.add(simulation);
+    counters_.add(simulation);
     last_frame_ = simulation.step_index();
 }
 
@@ -159,11 +161,12 @@ void RunWriter::list(const PieceIndex& index) {
 void RunWriter::write_checkpoint(const Simulation& simulation, std::uint64_t scene, double wall_seconds,
                                  std::vector<CheckpointPart> parts) {
     const SecondsTo clock(output_seconds_);
-    Checkpoint checkpoint{scene, wall_seconds, output_seconds_, frames_.drain(),
-                          {},    {},           loads_.rows(),   std::move(parts)};
+    Checkpoint checkpoint{scene, wall_seconds,  output_seconds_,  frames_.drain(), {},
+                          {},    loads_.rows(), std::move(parts), counters_.rows()};
     if (contacts_) checkpoint.contacts = contacts_->drain();
     if (moving_) checkpoint.moving = moving_->drain();
     loads_.write(simulation);
+    counters_.write(simulation);
     ricochet::write_checkpoint(folder_ / kCheckpointFile, checkpoint, simulation);
 }
 
@@ -195,6 +198,7 @@ RunSummary RunWriter::close(const Simulation& simulation) {
         if (moving_) moving_->finish();
         write_colliders(simulation);
         loads_.write(simulation);
+        counters_.write(simulation);
     }
     RunSummary summary = summarize(simulation, info_.groups);
     summary.frames = frames_.submitted();

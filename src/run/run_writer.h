@@ -12,6 +12,7 @@
 #include "ricochet/core/box3.h"
 #include "ricochet/simulation.h"
 #include "run/checkpoint.h"
+#include "run/counter_tables.h"
 #include "run/frame_writer.h"
 #include "run/run_report.h"
 
@@ -102,6 +103,7 @@ private:
     FrameWriter frames_;
     std::optional<ContactLog> contacts_;
     LoadTables loads_;
+    CounterTables counters_;
     std::optional<FrameWriter> moving_;  ///< writer of the moving colliders; empty if none move
 };
 

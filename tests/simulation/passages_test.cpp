@@ -22,7 +22,7 @@ std::string letters(const std::vector<Passage>& passages) {
 }
 
 CounterDescription disk(double height, double radius = 1.0, const Vec3& normal = {0, 0, 1}) {
-    return {"disk", {0, 0, height}, normal, radius};
+    return {"disk", DiskCounter{{0, 0, height}, normal, radius}};
 }
 
 FlownPiece piece(const Path& path) { return {path, 0.0, path.duration, {}, {}, true}; }
@@ -126,7 +126,7 @@ TEST(Passages, BalanceIsTheChangeOfSideForAnyPath) {
     for (int trial = 0; trial < test::scaled(2000); ++trial) {
         SCOPED_TRACE(trial);
         const CounterDescription counter = disk(0.0, 1e9, {coordinate(), coordinate(), 1.0});
-        const CounterDisk plane(counter);
+        const FlatSurface plane(std::get<DiskCounter>(counter.shape));
         Vec3 at{coordinate(), coordinate(), coordinate()};
         int balance = plane.is_in_front(at) ? 1 : 0;
         for (int k = 0; k < 6; ++k) {

@@ -63,11 +63,10 @@ void FreeFlights::advance_each(std::size_t begin, std::size_t stop, const TimeSp
     const std::optional<Vec3>& common = rules_.forces.common_acceleration();
     for (std::size_t i = begin; i < stop; ++i) {
         if (!schedule_.is_in_free_flight(i)) continue;
-        const FreeFlight flight(rules_.settings.integrator,
-                                common ? *common : rules_.forces.acceleration(store_.force_input(i, step.begin)),
-                                step.end - step.begin);
+        const Vec3 acceleration = common ? *common : rules_.forces.acceleration(store_.force_input(i, step.begin));
+        const FreeFlight flight(rules_.settings.integrator, acceleration, step.end - step.begin);
         const PhaseState end = flight.step(particles.position[i], particles.velocity[i]);
-        if (record != nullptr) report(i, piece_to(i, end, flight.duration()), step, *record);
+        if (record != nullptr) report(i, piece_to(i, end, acceleration, step), step, *record);
         particles.position[i] = end.position;
         particles.velocity[i] = end.velocity;
     }
@@ -110,16 +109,21 @@ std::optional<Flight> FreeFlights::clear_flight(std::size_t i, const TimeSpan& s
     return flight;
 }
 
-/// Returns the path of a free flight of particle i that is not stored yet. end: its state at the end.
-FlownPiece FreeFlights::piece_to(std::size_t i, const PhaseState& end, double duration) const {
+/// Returns the path of a free flight of particle i over a step, which is not stored yet. It has the bits of a flight
+/// that made a query, so results that follow from it do not depend on the query schedule. acceleration: in m/s^2.
+/// end: the particle's state at the end.
+FlownPiece FreeFlights::piece_to(std::size_t i, const PhaseState& end, const Vec3& acceleration,
+                                 const TimeSpan& step) const {
+    const IntegratorKind kind = rules_.settings.integrator.kind;
     const Vec3& from = store_.particles().position[i];
     const Vec3& velocity = store_.particles().velocity[i];
-    const bool is_line = kicks_first(rules_.settings.integrator.kind) ||
-                         rules_.settings.integrator.kind == IntegratorKind::forward_euler;
-    Path path = is_line ? line_path(from, (end.position - from) / duration, duration)
-                        : hermite_path(from, velocity, end.position, end.velocity, duration);
-    path.end = end.position;  // a line's own end can differ by rounding
-    return {path, 0.0, duration, velocity, end.velocity, true};
+    const double duration = step.end - step.begin;
+    Path path = kicks_first(kind)                       ? line_path(from, end.velocity, duration)
+                : kind == IntegratorKind::forward_euler ? line_path(from, velocity, duration)
+                                                        : parabola_path(from, velocity, acceleration, duration);
+    path.end = end.position;
+    const double begin = (step.begin + duration) - duration;  // computed like the beginning of a queried flight
+    return {path, begin, duration, velocity, end.velocity, true};
 }
 
 /// Reports a flight of particle i over a whole step that is not stored yet.

@@ -126,7 +126,8 @@ private:
     void advance_each(std::size_t begin, std::size_t end, const TimeSpan& step, BlockRecord* record);
     void fly_in_clear_spaces(std::size_t begin, std::size_t end, const TimeSpan& step, BlockRecord* record);
     [[nodiscard]] std::optional<Flight> clear_flight(std::size_t i, const TimeSpan& step) const;
-    [[nodiscard]] FlownPiece piece_to(std::size_t i, const PhaseState& end, double duration) const;
+    [[nodiscard]] FlownPiece piece_to(std::size_t i, const PhaseState& end, const Vec3& acceleration,
+                                      const TimeSpan& step) const;
     void report(std::size_t i, const FlownPiece& piece, const TimeSpan& step, BlockRecord& record) const;
     void catch_up(std::size_t i);
     void catch_up_active(std::span<const std::uint32_t> active);

@@ -19,7 +19,7 @@ namespace ricochet {
 namespace {
 
 /// First number of every saved state. Its last digits change with the layout.
-constexpr std::uint64_t kStateFormat = 0x5249434f5354000eULL;
+constexpr std::uint64_t kStateFormat = 0x5249434f5354000fULL;
 
 /// Archives the number of entries of a list, which must be the same when reading.
 template <class Archive>

@@ -154,15 +154,6 @@ void validate_springs(const SimulationSetup& setup) {
     }
 }
 
-/// Validates a counter. It needs a name, because the summary and messages use the name.
-void validate(const CounterDescription& counter, std::size_t number) {
-    const Subject subject("counter", number, counter.name);
-    if (counter.name.empty()) subject.refuse("name", "none", "a name");
-    subject.require(counter.center, kCoordinate, "center", "m");
-    subject.require_direction(counter.normal, "normal");
-    subject.require(counter.radius, kLength, "radius", "m");
-}
-
 void validate(const Box3& bounds) {
     const Subject subject("bounds");
     for (int axis = 0; axis < 3; ++axis) {
@@ -227,7 +218,7 @@ const SimulationSetup& validated(const SimulationSetup& setup) {
     validate_together(setup);
     validate_names(setup.colliders, "collider");
     validate_names(setup.emitters, "emitter");
-    for (std::size_t k = 0; k < setup.counters.size(); ++k) validate(setup.counters[k], k);
+    validate_counters(setup.counters);
     validate_names(setup.counters, "counter");
     validate_emitters(setup);
     validate_springs(setup);

@@ -53,6 +53,9 @@ const SimulationSetup& validated(const SimulationSetup& setup);
 /// Refuses parts that cannot be combined: moving colliders, bodies, spheres that meet, flows, forces between particles.
 void validate_together(const SimulationSetup& setup);
 
+/// Checks counters, except whether their names differ.
+void validate_counters(std::span<const CounterDescription> counters);
+
 /// Checks the settings that change temperatures, and their requirements on particles and on motion.
 void validate_heat(const SimulationSetup& setup);
 /// Checks the requirements of forces that depend on temperatures.

@@ -167,7 +167,7 @@ Fields<Unbound> scene_fields() {
         {"reference_camera", ValueType::object, "Camera for emitter rates per screen area.", &reference_camera_spec(),
          Without{"no such rates"}},
         {"bounds", ValueType::object, "Box outside which particles are retired.", &bounds_spec(), Without{"no box"}},
-        {"counters", ValueType::list, "Disks that count the particles that pass them.", &counter_spec()},
+        {"counters", ValueType::list, "Surfaces that count the particles that pass them.", &counter_spec()},
         {"output", ValueType::object, "Files that a run writes.", &output_spec(), Without{kDefaults}},
         {"camera", ValueType::object, "Camera of pictures.", &camera_spec(), Without{"a camera that sees everything"}},
         {"picture", ValueType::object, "Light and surroundings of pictures.", &picture_spec(), Without{"a clear day"}}};

@@ -86,6 +86,17 @@ Problem vector_problem(const JsonNode& node, const KeySpec& key) {
     return fmt::format("found a vector of no length, expected {}", expectation(key));
 }
 
+Problem two_numbers_problem(const JsonNode& node, const KeySpec& key) {
+    const JsonNode::Array* items = node.array();
+    if (items == nullptr || items->size() != 2) return found_expected(node, key);
+    for (const JsonNode& item : *items) {
+        const std::optional<double> value = item.number();
+        if (!value) return fmt::format("found {} in the list, expected {}", described(item), expectation(key));
+        if (!key.range.contains(*value)) return out_of_range(number_text(*value) + " in the list", key, *value);
+    }
+    return std::nullopt;
+}
+
 Problem scale_problem(const JsonNode& node, const KeySpec& key) {
     Vec3 factors(1, 1, 1);
     if (const std::optional<double> factor = node.number()) {
@@ -194,6 +205,8 @@ Problem plain_problem(const JsonNode& node, const KeySpec& key) {
             return integers_problem(node, key);
         case ValueType::vector:
             return vector_problem(node, key);
+        case ValueType::two_numbers:
+            return two_numbers_problem(node, key);
         case ValueType::scale:
             return scale_problem(node, key);
         case ValueType::pair:
@@ -310,6 +323,7 @@ private:
         KeySpec key{.name = "type", .type = ValueType::choice, .description = "", .required = true};
         for (const Variant& variant : spec.variants) key.choices.push_back({variant.name, variant.description});
         JsonNode* type = node.find("type");
+        if (type == nullptr && !spec.default_type.empty()) return variant_of(node, spec);
         if (type == nullptr) {
             diagnostics_.error(node.location, path_of_key(path, "type"), "missing, expected " + expectation(key));
             return nullptr;

@@ -106,6 +106,7 @@ private:
 [[nodiscard]] const ObjectSpec& particle_file_spec();
 [[nodiscard]] const ObjectSpec& springs_spec();
 [[nodiscard]] const ObjectSpec& counter_spec();
+[[nodiscard]] const ObjectSpec& histogram_spec();
 [[nodiscard]] const ObjectSpec& camera_spec();
 [[nodiscard]] const ObjectSpec& picture_spec();
 [[nodiscard]] const ObjectSpec& collider_looks_spec();
@@ -253,7 +254,7 @@ void build_heat(const SceneContext& context, const ForceBuilder& forces, Simulat
                                                           const ObjectView& view);
 /// Builds the springs. Appends the particles of ropes, chains and cloth to the particles of the scene.
 void build_springs(SceneContext& context, SimulationSetup& setup);
-void build_counters(const SceneContext& context, SimulationSetup& setup);
+void build_counters(SceneContext& context, SimulationSetup& setup);
 /// Sets the estimated memory of a run. If it exceeds the limit of this process, reports the part of the scene that
 /// needs most memory. Warns of bursts that exceed the largest number of particles.
 void check_memory(const SceneContext& context, SceneDescription& scene);

@@ -7,6 +7,7 @@
 /// fields_of() makes the keys of a struct whose settings have their own table (core/setting.h).
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <functional>
 #include <initializer_list>
@@ -62,6 +63,12 @@ struct Format<Vec3> {
     static constexpr ValueType kType = ValueType::vector;
     static void read(const JsonNode& node, const KeySpec& key, Vec3& value);
     static std::string text(const KeySpec& key, const Vec3& value);
+};
+template <>
+struct Format<std::array<double, 2>> {
+    static constexpr ValueType kType = ValueType::two_numbers;
+    static void read(const JsonNode& node, const KeySpec& key, std::array<double, 2>& value);
+    static std::string text(const KeySpec& key, const std::array<double, 2>& value);
 };
 template <>
 struct Format<MeanSpread> {
@@ -250,8 +257,8 @@ template <class Struct>
 
 template <class Struct>
 [[nodiscard]] ObjectSpec object(std::string_view title, std::string_view description, const Fields<Struct>& fields,
-                                std::vector<Variant> variants = {}) {
-    return {title, description, {fields.begin(), fields.end()}, std::move(variants), &typeid(Struct)};
+                                std::vector<Variant> variants = {}, std::string_view default_type = {}) {
+    return {title, description, {fields.begin(), fields.end()}, std::move(variants), &typeid(Struct), default_type};
 }
 
 /// Empty struct for tables whose keys set no members.

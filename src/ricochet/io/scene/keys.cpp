@@ -38,6 +38,13 @@ std::string vector_words(const KeySpec& key) {
     return words;
 }
 
+std::string two_words(const KeySpec& key) {
+    std::string words = "[a, b]";
+    if (const std::string range = range_words(key.range); !range.empty()) words += ", each " + range;
+    if (!key.unit.empty()) words += fmt::format(" ({})", key.unit);
+    return words;
+}
+
 std::string pair_words(const KeySpec& key) {
     std::string words = number_words(key, "a number") + " or [mean, spread] with spread >= 0";
     if (const std::string low = range_words(key.low_end); !low.empty()) words += " and mean - spread " + low;
@@ -63,6 +70,7 @@ std::vector<const KeySpec*> keys_of(const ObjectSpec& object, const Variant* var
 
 const Variant* variant_of(const JsonNode& node, const ObjectSpec& spec) {
     const JsonNode* type = node.find("type");
+    if (type == nullptr && node.object() != nullptr) return find_named(spec.variants, spec.default_type);
     if (type == nullptr || type->text() == nullptr) return nullptr;
     return find_named(spec.variants, *type->text());
 }
@@ -102,6 +110,8 @@ std::string expectation(const KeySpec& key) {
             return "a list of whole numbers, at least one";
         case ValueType::vector:
             return vector_words(key);
+        case ValueType::two_numbers:
+            return two_words(key);
         case ValueType::scale:
             return fmt::format("a number {} 0, or three in [x, y, z]", key.range.lower_open ? "above" : "other than");
         case ValueType::pair:
@@ -249,6 +259,14 @@ void Format<Vec3>::read(const JsonNode& node, const KeySpec& /*key*/, Vec3& valu
 std::string Format<Vec3>::text(const KeySpec& key, const Vec3& value) {
     if (key.type == ValueType::scale) return fmt::format("{}", value.x);
     return fmt::format("[{}, {}, {}]", value.x, value.y, value.z);
+}
+
+void Format<std::array<double, 2>>::read(const JsonNode& node, const KeySpec& /*key*/, std::array<double, 2>& value) {
+    const JsonNode::Array* items = node.array();
+    for (std::size_t k = 0; items != nullptr && k < value.size(); ++k) value[k] = (*items)[k].number().value_or(0.0);
+}
+std::string Format<std::array<double, 2>>::text(const KeySpec& /*key*/, const std::array<double, 2>& value) {
+    return fmt::format("[{}, {}]", value[0], value[1]);
 }
 
 void Format<MeanSpread>::read(const JsonNode& node, const KeySpec& /*key*/, MeanSpread& value) {

@@ -24,6 +24,7 @@ enum class ValueType {
     choice,          ///< one of KeySpec::choices
     integers,        ///< a list of whole numbers >= 0
     vector,          ///< [x, y, z]
+    two_numbers,     ///< [a, b]
     scale,           ///< a number or [x, y, z]; no component is zero
     pair,            ///< a number, or [mean, spread] for a uniform distribution from mean - spread to mean + spread
     object,          ///< an object of KeySpec::content
@@ -87,12 +88,14 @@ struct Variant {
 };
 
 /// One kind of object. If there are variants, the key "type" selects one of them. `keys` are common to all variants.
+/// `default_type` is the type of objects without this key. It is empty if the key is required.
 struct ObjectSpec {
     std::string_view title;  ///< singular noun for messages and headings, for example "collider"
     std::string_view description;
     std::vector<KeySpec> keys;
     std::vector<Variant> variants = {};
     const std::type_info* target = &typeid(void);  ///< type of the struct whose members the keys set
+    std::string_view default_type = {};
 };
 
 /// Returns the keys of the object and of the variant, in the order of the tables. variant: may be null.

@@ -1,137 +1,99 @@
 #include "ricochet/simulation/counters/passages.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <utility>
 
 #include "ricochet/geometry/sweep/path.h"
 
 namespace ricochet {
 namespace {
 
-/// Number of bisections for the time of a passage. Local: more would exceed the precision of a double.
-constexpr int kPassageHalvings = 64;
-
-/// Times, in s, at which a piece of a path reaches an extreme height above a plane, in ascending order.
-struct Extremes {
-    std::array<double, 2> time{};
-    int count = 0;
-
-    void add(double s, double duration) {
-        if (s > 0.0 && s < duration) time[static_cast<std::size_t>(count++)] = s;
+/// Returns true if the particle has met no surface from the start of its move to the end of a piece.
+bool is_undisturbed_until(std::span<const FlownPiece> pieces, std::size_t piece) {
+    for (std::size_t k = 0; k <= piece && k < pieces.size(); ++k) {
+        if (!pieces[k].is_free) return false;
+        if (k > 0 && pieces[k].start_velocity != pieces[k - 1].arrival) return false;
     }
-};
-
-/// Returns the extremes of the height along a path. Between two extremes the height is monotonic.
-Extremes extremes_of(const Path& path, const Vec3& normal, double duration) {
-    const double a = 3.0 * dot(normal, path.c[3]);
-    const double b = 2.0 * dot(normal, path.c[2]);
-    const double c = dot(normal, path.c[1]);
-    Extremes extremes;
-    const double discriminant = b * b - 4.0 * a * c;
-    if (!(discriminant > 0.0)) return extremes;
-    // The root of larger magnitude has no cancellation. The other root follows from the product of both.
-    const double q = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
-    double first = a != 0.0 ? q / a : -1.0;
-    double second = q != 0.0 ? c / q : -1.0;
-    if (first > second) std::swap(first, second);
-    extremes.add(first, duration);
-    extremes.add(second, duration);
-    return extremes;
+    return true;
 }
 
-bool is_still(const FlownPiece& piece) {
-    return !(piece.duration > 0.0) ||
-           (piece.path.c[1] == Vec3{} && piece.path.c[2] == Vec3{} && piece.path.c[3] == Vec3{});
-}
-
-/// Returns true if a single piece certainly stays on one side of a disk's plane, as most free flights do.
-bool stays_on_one_side(const CounterDisk& disk, const MovedParticle& moved, std::span<const FlownPiece> pieces) {
-    if (pieces.size() != 1) return false;
-    const bool is_in_front = disk.is_in_front(moved.from);
-    const ControlPoints hull = pieces[0].path.control_points();
-    return is_in_front == disk.is_in_front(moved.to) &&
-           std::ranges::all_of(hull, [&](const Vec3& point) { return disk.is_in_front(point) == is_in_front; });
-}
-
-/// Follows one particle and finds its passages through one disk.
-class DiskTrace {
-public:
-    DiskTrace(const CounterDisk& disk, const Vec3& from) : disk_(disk), is_in_front_(disk.is_in_front(from)) {}
-
-    /// Follows a path for a duration, in s. next: stored position at which the particle continues. It replaces the end
-    /// of the path, because after a contact the particle continues at a safe position.
-    template <class Report>
-    void follow(const Path& path, double duration, const Vec3& next, const Report& report) {
-        double from = 0.0;
-        const Extremes extremes = extremes_of(path, disk_.normal(), duration);
-        for (int k = 0; k < extremes.count; ++k) {
-            const double to = extremes.time[static_cast<std::size_t>(k)];
-            pass(path, from, to, disk_.is_in_front(path.position(to)), report);
-            from = to;
-        }
-        pass(path, from, duration, disk_.is_in_front(next), report);
+/// Sets the time, velocity and spin of a passage at s seconds from the start of a leg. The spin changes at the first
+/// impact or contact of the move.
+void complete_on_path(const MovedParticle& moved, std::span<const FlownPiece> pieces, const PathLeg& leg, double s,
+                      Passage& passage) {
+    if (leg.piece >= pieces.size()) {
+        passage.time = moved.end;
+        passage.spin = moved.spin_after;
+        return;
     }
-
-private:
-    template <class Report>
-    void pass(const Path& path, double from, double to, bool is_in_front, const Report& report) {
-        if (is_in_front == is_in_front_) return;
-        for (int k = 0; k < kPassageHalvings; ++k) {
-            const double middle = 0.5 * (from + to);
-            (disk_.is_in_front(path.position(middle)) == is_in_front ? to : from) = middle;
-        }
-        is_in_front_ = is_in_front;
-        if (disk_.contains(path.position(to))) report(is_in_front);
-    }
-
-    const CounterDisk& disk_;
-    bool is_in_front_;
-};
+    const FlownPiece& piece = pieces[leg.piece];
+    passage.time = piece.begin + (leg.is_gap ? 0.0 : s);
+    passage.velocity = leg.is_gap ? piece.start_velocity : piece.at(passage.time).velocity;
+    passage.spin = is_undisturbed_until(pieces, leg.piece) ? moved.spin_before : moved.spin_after;
+}
 
 }  // namespace
 
-CounterDisk::CounterDisk(const CounterDescription& counter)
-    : center_(counter.center), normal_(normalized(counter.normal / max_abs(counter.normal))), radius_(counter.radius) {}
-
-bool CounterDisk::contains(const Vec3& position) const {
-    const Vec3 offset = position - center_;
-    return length(offset - dot(normal_, offset) * normal_) <= radius_;
+PassageFinder::PassageFinder(std::span<const CounterDescription> counters) {
+    for (const CounterDescription& counter : counters) {
+        if (const auto* const box = std::get_if<BoxCounter>(&counter.shape)) {
+            surfaces_.emplace_back(BoxSurface(*box));
+        } else if (const auto* const mesh = std::get_if<MeshCounter>(&counter.shape)) {
+            surfaces_.emplace_back(MeshSurface(*mesh));
+        } else if (const auto* const plane = std::get_if<PlaneCounter>(&counter.shape)) {
+            surfaces_.emplace_back(FlatSurface(*plane));
+        } else if (const auto* const rectangle = std::get_if<RectangleCounter>(&counter.shape)) {
+            surfaces_.emplace_back(FlatSurface(*rectangle));
+        } else {
+            surfaces_.emplace_back(FlatSurface(std::get<DiskCounter>(counter.shape)));
+        }
+    }
 }
 
-PassageFinder::PassageFinder(std::span<const CounterDescription> counters) : disks_(counters.begin(), counters.end()) {}
+bool PassageFinder::encloses(std::size_t counter) const {
+    const auto* const mesh = std::get_if<MeshSurface>(&surfaces_[counter]);
+    return mesh != nullptr ? mesh->is_closed() : std::holds_alternative<BoxSurface>(surfaces_[counter]);
+}
+
+template <class Complete>
+void PassageFinder::trace(const MovedParticle& moved, std::span<const FlownPiece> pieces,
+                          std::vector<Passage>& passages, const Complete& complete) const {
+    if (!is_finite(moved.from) || !is_finite(moved.to)) return;
+    for (std::uint32_t n = 0; n < surfaces_.size(); ++n) {
+        const auto report = [&](const PathLeg& leg, bool is_forward, double s, const Vec3& normal) {
+            Passage passage{n, is_forward, moved.id, moved.mass, moved.radius, moved.birth_time, 0.0, {}, {}, {}};
+            passage.direction = is_forward ? normal : -normal;
+            complete(leg, s, passage);
+            passages.push_back(passage);
+        };
+        std::visit([&](const auto& surface) { surface.trace(moved.from, moved.to, pieces, report); }, surfaces_[n]);
+    }
+}
 
 void PassageFinder::trace(const MovedParticle& moved, std::span<const FlownPiece> pieces,
                           std::vector<Passage>& passages) const {
-    if (!is_finite(moved.from) || !is_finite(moved.to)) return;
-    const auto next_moving = [&](std::size_t k) {
-        while (k < pieces.size() && is_still(pieces[k])) ++k;
-        return k;
-    };
-    const std::size_t first = next_moving(0);
-    for (std::uint32_t n = 0; n < disks_.size(); ++n) {
-        const auto report = [&](bool is_forward) { passages.push_back({n, is_forward, moved.id, moved.mass}); };
-        if (stays_on_one_side(disks_[n], moved, pieces)) continue;
-        DiskTrace trace(disks_[n], moved.from);
-        const Vec3& start = first < pieces.size() ? pieces[first].path.c[0] : moved.to;
-        if (start != moved.from) trace.follow(line_path(moved.from, start - moved.from, 1.0), 1.0, start, report);
-        for (std::size_t k = first; k < pieces.size();) {
-            const std::size_t next = next_moving(k + 1);
-            const Vec3& end = next < pieces.size() ? pieces[next].path.c[0] : moved.to;
-            trace.follow(pieces[k].path, pieces[k].duration, end, report);
-            k = next;
-        }
-    }
+    trace(moved, pieces, passages,
+          [&](const PathLeg& leg, double s, Passage& passage) { complete_on_path(moved, pieces, leg, s, passage); });
 }
 
 void PassageFinder::trace(const MovedParticle& moved, std::span<const Segment> segments,
                           std::vector<Passage>& passages) const {
     std::vector<FlownPiece> pieces;
+    std::vector<double> lengths{0.0};  // of the segments before each segment, m; the last entry is that of all
     for (const Segment& segment : segments) {
         pieces.push_back({line_path(segment.from, segment.to - segment.from, 1.0), 0.0, 1.0, {}, {}, false});
+        lengths.push_back(lengths.back() + length(segment.to - segment.from));
     }
-    trace(moved, pieces, passages);
+    const double duration = moved.end - moved.begin;
+    trace(moved, pieces, passages, [&](const PathLeg& leg, double s, Passage& passage) {
+        passage.time = moved.begin;
+        passage.spin = moved.spin_after;
+        if (leg.piece >= pieces.size() || !(lengths.back() > 0.0) || !(duration > 0.0)) return;
+        const double before = lengths[leg.piece];
+        const double own = lengths[leg.piece + 1] - before;
+        passage.time += duration * ((before + (leg.is_gap ? 0.0 : s * own)) / lengths.back());
+        const Segment& segment = segments[leg.piece];
+        if (own > 0.0) passage.velocity = (lengths.back() / duration / own) * (segment.to - segment.from);
+    });
 }
 
 }  // namespace ricochet

@@ -187,6 +187,7 @@ SimulationSetup rain(ResponseKind response = ResponseKind::exact) {
     emitter.shape = BoxShape{{0, 0, 0.8}, {1, 1, 0.3}};
     emitter.rate = {600.0, 100.0};
     emitter.mass = {0.1, 0.07};
+    emitter.radius = {0.01, 0.005};
     emitter.lifetime = {0.8, 0.2};
     setup.emitters.push_back(emitter);
     EmitterDescription child;

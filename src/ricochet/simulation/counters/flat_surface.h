@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "ricochet/simulation/counters/counter.h"
 #include "ricochet/simulation/counters/path_legs.h"

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <variant>
+#include <vector>
 
 #include "ricochet/core/portable_math.h"
 

@@ -5,6 +5,7 @@
 /// stored position see the same side of it, so no passage is lost or counted twice.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <variant>

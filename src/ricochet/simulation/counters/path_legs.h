@@ -3,11 +3,13 @@
 /// side along a leg.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 
 #include "ricochet/core/vec3.h"
 #include "ricochet/dynamics/coupled_member.h"
+#include "ricochet/geometry/sweep/path.h"
 
 namespace ricochet {
 

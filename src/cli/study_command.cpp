@@ -46,9 +46,12 @@ public:
     explicit StudyFolder(const std::filesystem::path& folder) {
         std::error_code error;
         std::filesystem::create_directories(folder, error);
-        if (!std::filesystem::is_directory(folder)) {
+        std::error_code ignored;
+        if (!std::filesystem::is_directory(folder, ignored)) {
             throw InputError(
-                fmt::format("{}: not a folder, expected a new or empty folder, or that of a study", folder.string()));
+                fmt::format("{}: cannot be used as a folder ({}), expected a new or empty folder, or that "
+                            "of a study",
+                            folder.string(), error ? error.message() : "it is a file"));
         }
         const std::filesystem::path marker = folder / kMarker;
         if (!std::filesystem::exists(marker) && !std::filesystem::is_empty(folder, error)) {

@@ -114,6 +114,18 @@ TEST(TangentialRestitution, OfOneSurfaceAmongSeveralIsThatOfASingleImpact) {
     }
 }
 
+// A floor that supports the particle does not count as hit.
+TEST(TangentialRestitution, ActsOnOneOfSeveralSurfacesOnlyIfItAloneIsHit) {
+    const auto after = [](double beta, bool is_support) {
+        const ImpactSurface wall{{1, 0, 0}, 1.0, 5.0, 0.0, 0.0, {}, {}, 0.0, false, beta, 1.0};
+        ImpactSurface floor{kUp, 1.0, 0.0, 0.0, 0.0, {}, {}, 0.0, is_support, beta, 1.0};
+        const Motion before{{-1, 2, is_support ? 0.0 : -1.0}, {}};
+        return solve_impact(before, 0.0, std::array{wall, floor}).after.velocity;
+    };
+    EXPECT_NEAR(length(after(0.5, true) - Vec3{1, -1, 0}), 0.0, 1e-12);
+    EXPECT_EQ(after(0.5, false), after(0.0, false));
+}
+
 TEST(TangentialRestitution, NeverAddsEnergyInAWedge) {
     RandomSequence random(8, 0, 0);
     for (int k = 0; k < test::scaled(2000); ++k) {

@@ -11,6 +11,8 @@
 #include <set>
 #include <span>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/printable.h"
@@ -43,12 +45,13 @@ public:
         }
     }
     [[nodiscard]] const Json* find(std::string_view key) const {
+        if (!object_.is_object()) return nullptr;
         const auto found = object_.find(key);
         return found == object_.end() ? nullptr : &*found;
     }
     [[nodiscard]] const Json& required(std::string_view key) const {
         const Json* const found = find(key);
-        if (found == nullptr) refuse(key, "is missing, expected it to be given");
+        if (found == nullptr) refuse(key, "is missing, expected to be given; see docs/studies.md");
         return *found;
     }
     [[nodiscard]] std::string text(std::string_view key) const {
@@ -68,7 +71,9 @@ public:
         const bool is_fine =
             value.is_number_unsigned() && value.get<std::uint64_t>() >= least && value.get<std::uint64_t>() <= most;
         if (!is_fine) {
-            refuse(key, fmt::format("found {}, expected a whole number from {} to {}", shown(value), least, most));
+            const std::string range =
+                least == most ? std::to_string(least) : fmt::format("a whole number from {} to {}", least, most);
+            refuse(key, fmt::format("found {}, expected {}", shown(value), range));
         }
         return value.get<std::uint64_t>();
     }
@@ -106,7 +111,7 @@ std::vector<std::string> spaced_values(const StudyReader& reader) {
     for (std::size_t k = 0; k < count; ++k) {
         const double part = static_cast<double>(k) / static_cast<double>(count - 1);
         const double inner = is_log ? from * std::pow(to / from, part) : from + part * (to - from);
-        values.push_back(Json(k + 1 == count ? to : inner).dump());
+        values.push_back(fmt::format("{:.12g}", k + 1 == count ? to : inner));
     }
     return values;
 }
@@ -123,18 +128,61 @@ StudyAxis read_axis(const Json& object, const std::string& file, std::size_t num
     for (const std::string_view other : {"from", "to", "count", "spacing"}) {
         if (reader.find(other) != nullptr) reader.refuse(other, "found beside `values`, expected one of them");
     }
-    for (const Json& value : reader.list("values")) axis.values.push_back(value.dump());
+    for (const Json& value : reader.list("values")) {
+        axis.values.push_back(value.dump());
+        if (std::ranges::count(axis.values, axis.values.back()) == 1) continue;
+        reader.refuse("values", fmt::format("{} is there twice, expected each value once", axis.values.back()));
+    }
     return axis;
 }
 
+/// Refuses a key that an object has twice. The parser calls it for each key and each beginning and end of an object.
+class DuplicateKeys {
+public:
+    explicit DuplicateKeys(std::string file) : file_(std::move(file)) {}
+
+    bool operator()(int /*depth*/, Json::parse_event_t event, const Json& value) {
+        if (event == Json::parse_event_t::object_start) keys_.emplace_back();
+        if (event == Json::parse_event_t::object_end) keys_.pop_back();
+        if (event != Json::parse_event_t::key || keys_.back().insert(value.get<std::string>()).second) return true;
+        throw InputError(
+            fmt::format("{}: the key {} is there twice, expected it once", file_, printable(value.dump())));
+    }
+
+private:
+    std::string file_;
+    std::vector<std::set<std::string>> keys_;  // of the objects that are open
+};
+
 Json parsed(const std::filesystem::path& file) {
+    const std::string name = file.string();
+    std::error_code error;
     std::ifstream in(file, std::ios::binary);
-    if (!in) throw InputError(fmt::format("{}: the study cannot be opened, expected a readable file", file.string()));
+    if (!in || !std::filesystem::is_regular_file(file, error)) {
+        throw InputError(fmt::format("{}: the study cannot be read, expected a readable file", name));
+    }
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     try {
-        return Json::parse(text);
-    } catch (const Json::parse_error& error) {
-        throw InputError(fmt::format("{}: not valid JSON: {}", file.string(), printable(error.what())));
+        return Json::parse(text, DuplicateKeys(name));
+    } catch (const Json::parse_error& broken) {
+        throw InputError(fmt::format("{}: not valid JSON at byte {}", name, broken.byte));
+    }
+}
+
+/// Throws InputError for keys that two parts of a study set.
+void require_distinct_keys(const StudyPlan& plan, const StudyReader& reader) {
+    for (const StudyAxis& axis : plan.axes) {
+        const auto sets_it = [&](const std::string& text) { return text.starts_with(axis.key + "="); };
+        if (std::ranges::any_of(plan.overrides, sets_it)) {
+            reader.refuse("set", fmt::format("\"{}\" is also an axis, expected one of them", axis.key));
+        }
+    }
+    const auto is_seed = [](const StudyAxis& axis) { return axis.key == "simulation.seed"; };
+    const auto sets_seed = [](const std::string& text) { return text.starts_with("simulation.seed="); };
+    if (!plan.seed) return;
+    if (std::ranges::any_of(plan.axes, is_seed) || std::ranges::any_of(plan.overrides, sets_seed)) {
+        reader.refuse("repeats",
+                      "found beside the key \"simulation.seed\", which repeats set, expected `seed` instead");
     }
 }
 
@@ -151,6 +199,9 @@ StudyPlan read_study(const std::filesystem::path& file) {
                                                      "repeats",        "seed",  "results"};
     const Json root = parsed(file);
     const StudyReader reader(root, file.string(), "");
+    if (reader.find("ricochet") != nullptr && reader.find("ricochet_study") == nullptr) {
+        reader.refuse("ricochet", "this is a scene, expected a study; `ricochet run` runs a scene");
+    }
     reader.require_object(kKnown);
     (void)reader.count("ricochet_study", 1, 1);
     StudyPlan plan;
@@ -172,8 +223,11 @@ StudyPlan read_study(const std::filesystem::path& file) {
     for (const Json& result : reader.list("results")) {
         if (!result.is_string()) reader.refuse("results", "expected a list of paths in summary.json");
         plan.results.push_back(result.get<std::string>());
+        if (std::ranges::count(plan.results, plan.results.back()) == 1) continue;
+        reader.refuse("results", fmt::format("\"{}\" is there twice, expected it once", plan.results.back()));
     }
     if (plan.repeats > 1 && !plan.seed) plan.seed = 0;
+    require_distinct_keys(plan, reader);
     if (product_of(plan) > kMostStudyRuns) {
         reader.refuse("axes", fmt::format("more than {} runs, expected fewer values or repeats", kMostStudyRuns));
     }

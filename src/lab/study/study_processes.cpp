@@ -13,15 +13,18 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <span>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
 #include "ricochet/core/printable.h"
+#include "ricochet/core/unfinished_file.h"
 #include "run/run_folder.h"
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves the declaration to the program
@@ -54,20 +57,27 @@ public:
             while (!is_stopped && next < runs_.size() && running_.size() < processes_.at_a_time) begin(next++);
             if (is_stopped) next = std::max(next, runs_.size());
             wait_for_some();
-            if (!is_stopped && should_stop({finished_, failed_, runs_.size()})) {
+            if (!is_stopped && (!missing_.empty() || should_stop({finished_, failed_, runs_.size()}))) {
                 is_stopped = true;
                 for (std::size_t k = next; k < runs_.size(); ++k) outcomes_[k].failure = "not run";
                 for (const Process& process : running_) (void)::kill(process.id, SIGTERM);
             }
         }
+        if (!missing_.empty()) {
+            throw InputError(
+                fmt::format("results: summary.json of a run has no number \"{}\", expected a path such as "
+                            "contacts or counters.NAME.forward",
+                            missing_));
+        }
         (void)should_stop({finished_, failed_, runs_.size()});
-        return outcomes_;
+        return std::move(outcomes_);
     }
 
 private:
     struct Process {
         pid_t id = -1;
         std::size_t run = 0;
+        std::unique_ptr<UnfinishedFile> messages;  // a signal that ends this process kills the run, too
     };
 
     /// Returns the text that a run depends on: its arguments, and the scene file.
@@ -122,7 +132,7 @@ private:
         posix_spawnattr_init(&attributes);
         // A process group of its own, so that Ctrl-C reaches only this process, which then asks the runs to end.
         posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-        Process process{-1, k};
+        Process process{-1, k, std::make_unique<UnfinishedFile>(beside(run, kMessagesFile))};
         const int error =
             ::posix_spawn(&process.id, processes_.program.c_str(), &actions, &attributes, pointers.data(), environ);
         posix_spawnattr_destroy(&attributes);
@@ -130,7 +140,8 @@ private:
         if (error != 0) {
             throw RunError(fmt::format("study: {} cannot be started ({})", processes_.program, std::strerror(error)));
         }
-        running_.push_back(process);
+        process.messages->set_writer(process.id);
+        running_.push_back(std::move(process));
     }
 
     void wait_for_some() {
@@ -143,6 +154,7 @@ private:
                 continue;
             }
             has_ended = true;
+            running_[i].messages->set_writer(0);
             const std::size_t run = running_[i].run;
             running_.erase(running_.begin() + static_cast<std::ptrdiff_t>(i));
             finish(run, ended < 0 ? -1 : status);
@@ -158,7 +170,7 @@ private:
         for (const std::string& path : plan_.results) {
             if (!outcome.failure.empty()) break;
             const std::optional<double> number = number_in_summary(summary, path);
-            if (!number) outcome.failure = fmt::format("summary.json has no number \"{}\"", path);
+            if (!number && missing_.empty()) missing_ = path;
             outcome.results.push_back(number.value_or(0.0));
         }
         if (!outcome.failure.empty()) outcome.results.clear();
@@ -182,6 +194,7 @@ private:
     std::string scene_;  // content of the scene file
     std::vector<StudyOutcome> outcomes_;
     std::vector<Process> running_;
+    std::string missing_;  // path of a result that the summary of a run does not have
     std::size_t finished_ = 0;
     std::size_t failed_ = 0;
 };

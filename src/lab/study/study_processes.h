@@ -34,7 +34,7 @@ struct StudyProgress {
 /// file and the same values. A run that was interrupted continues from its checkpoint. Returns the outcomes in the
 /// order of the runs. should_stop is called now and then with the progress; if it returns true, running processes are
 /// asked to end (SIGTERM), and the function returns after them, with runs without an outcome marked as failures. Throws
-/// RunError if no process can be started.
+/// RunError if no process can be started, and InputError if the summary of a run lacks a result.
 [[nodiscard]] std::vector<StudyOutcome> run_study(const StudyPlan& plan, const std::vector<StudyRun>& runs,
                                                   const StudyProcesses& processes,
                                                   const std::function<bool(const StudyProgress&)>& should_stop);

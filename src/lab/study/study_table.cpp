@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "lab/compare/gnuplot.h"
 
@@ -41,7 +43,20 @@ const SummaryJson* member_of(const SummaryJson& json, const std::string& name) {
     for (const SummaryJson& entry : json) {
         if (entry.is_object() && entry.value("name", SummaryJson()) == SummaryJson(name)) return &entry;
     }
-    return nullptr;
+    std::size_t index = 0;
+    const auto [stop, error] = std::from_chars(name.data(), name.data() + name.size(), index);
+    const bool is_index = error == std::errc{} && stop == name.data() + name.size() && index < json.size();
+    return is_index ? &json[index] : nullptr;
+}
+
+/// Returns the value at a path, or null. Names can contain points, so a point may or may not end a name.
+const SummaryJson* value_at(const SummaryJson& json, const std::string& path) {
+    for (std::size_t end = path.find('.'); end != std::string::npos; end = path.find('.', end + 1)) {
+        const SummaryJson* const member = member_of(json, path.substr(0, end));
+        if (member == nullptr) continue;
+        if (const SummaryJson* const found = value_at(*member, path.substr(end + 1))) return found;
+    }
+    return member_of(json, path);
 }
 
 StudyMean mean_of(const std::vector<double>& values) {
@@ -91,13 +106,7 @@ std::map<std::string, std::vector<const StudyRow*>> lines_of(const StudyPlan& pl
 
 std::optional<double> number_in_summary(const std::string& summary, const std::string& path) {
     const SummaryJson root = SummaryJson::parse(summary, nullptr, false);
-    const SummaryJson* at = &root;
-    std::size_t begin = 0;
-    while (at != nullptr && begin <= path.size()) {
-        const std::size_t end = std::min(path.find('.', begin), path.size());
-        at = member_of(*at, path.substr(begin, end - begin));
-        begin = end + 1;
-    }
+    const SummaryJson* const at = value_at(root, path);
     if (at == nullptr || !(at->is_number() || at->is_boolean())) return std::nullopt;
     return at->is_boolean() ? static_cast<double>(at->get<bool>()) : at->get<double>();
 }

@@ -16,6 +16,7 @@ public:
     Impact(const Motion& before, double radius, std::span<const ImpactSurface> surfaces)
         : before_(before), radius_(radius), surfaces_(surfaces) {
         for (std::size_t k = 0; k < surfaces_.size(); ++k) add(k);
+        find_restitutions();
     }
 
     /// Solves the impact. Contacts that slip although they could stick get the friction of slip, in another solution.
@@ -60,10 +61,7 @@ private:
     /// Adds a surface. A surface with the same normal is replaced if its approach is clearly slower.
     void add(std::size_t surface) {
         const ImpactSurface& added = surfaces_[surface];
-        if (!added.is_support && separation_speed(added) < 0.0)
-            restitution_ = std::min(restitution_, added.restitution);
         tangential_factor_ = std::min(tangential_factor_, added.tangential_factor);
-        reverses_slip_ = reverses_slip_ || added.tangential_restitution > 0.0;
         is_driven_ = is_driven_ || added.velocity != Vec3{} || added.angular_velocity != Vec3{};
         for (std::size_t c = 0; c < count_; ++c) {
             const ImpactSurface& known = surfaces_[surface_of_[c]];
@@ -73,6 +71,25 @@ private:
             return;
         }
         surface_of_[count_++] = surface;
+    }
+
+    /// Finds the restitutions. Slip is reversed only at a single hit surface, beside others that support the particle.
+    /// Among several, the friction of one surface could act along the slip on it.
+    void find_restitutions() {
+        const auto is_hit = [&](const ImpactSurface& surface) {
+            return !surface.is_support && separation_speed(surface) < 0.0;
+        };
+        for (const ImpactSurface& surface : surfaces_) {
+            if (is_hit(surface)) restitution_ = std::min(restitution_, surface.restitution);
+        }
+        std::size_t hit = 0;
+        for (std::size_t c = 0; c < count_; ++c) {
+            const ImpactSurface& surface = surfaces_[surface_of_[c]];
+            if (!is_hit(surface)) continue;
+            ++hit;
+            reverses_slip_ = surface.tangential_restitution > 0.0;
+        }
+        reverses_slip_ = reverses_slip_ && hit == 1;
     }
 
     /// Returns the speed, in m/s, at which the particle separates along the normal before the impact.
@@ -94,7 +111,8 @@ private:
             const ImpactSurface& surface = surfaces_[surface_of_[c]];
             if (surface.friction == 0.0) continue;
             Vec3 slip = slip_velocity(before_, radius_, surface.normal) - surface.velocity;
-            if (slip_end == Slip::reverses && !surface.is_support) slip *= 1.0 + surface.tangential_restitution;
+            const bool is_hit = !surface.is_support && separation_speed(surface) < 0.0;
+            if (slip_end == Slip::reverses && reverses_slip_ && is_hit) slip *= 1.0 + surface.tangential_restitution;
             problem_.add(
                 sliding_friction(static_cast<std::uint32_t>(c), surface.normal, friction_of(c), radius_ > 0.0, slip));
         }

@@ -51,9 +51,10 @@ struct ImpactResult {
 /// All surfaces use one restitution e: the smallest among the approached surfaces that do not support the particle. Let
 /// u- and u+ be the normal velocities before and after the impact. Then u+ + e u- >= 0, the impulses are >= 0, and one
 /// of the two is zero (Moreau's law). For a supporting surface, the first condition is u+ >= 0. Friction stops the slip
-/// if possible, and reverses it with the tangential restitution of the surface. Otherwise it acts against the remaining
-/// slip. A contact that slips after all has the friction of slip, other contacts the static one. Finally, the smallest
-/// tangential factor scales the part of the velocity that is tangential to all surfaces.
+/// if possible. A single hit surface, beside supporting ones, also reverses the slip with its tangential restitution.
+/// Otherwise friction acts against the remaining slip. A contact that slips after all has the friction of slip, other
+/// contacts the static one. Finally, the smallest tangential factor scales the part of the velocity that is tangential
+/// to all surfaces.
 ///
 /// In wedges in which friction can hold a particle, this law may have no solution, or one that adds energy. The
 /// impulses are then 1 + e times the impulses of the impact without rebound (Poisson's law with one e for all

@@ -33,10 +33,11 @@ struct MoveReport {
     std::size_t index = 0;       ///< of the particle
     const Particles& particles;  ///< has the particle's state before the move
     const ForceInput& moved;     ///< state after the move
-    RecordedMotion before{};
-    RecordedMotion after{};
-    double end = 0.0;  ///< s, end of the particle's life in the substep
-    /// Time at which the particle has its new position, in s. It is earlier than `end` if the particle is stalled.
+    RecordedMotion before{};     ///< empty for free flights, sleepers and the global `rollback`
+    RecordedMotion after{};      ///< empty for free flights, sleepers and the global `rollback`
+    double end = 0.0;            ///< s, end of the particle's life in the substep
+    /// Time at which the particle has its new position, in s. It is earlier than `end` if the particle is stalled. Only
+    /// the response `exact` sets it.
     double stored_time = 0.0;
     std::span<const FlownPiece> pieces{};       ///< the path in the order of time
     std::span<const Segment> segments{};        ///< the path in the order of time

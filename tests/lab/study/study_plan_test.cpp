@@ -54,9 +54,9 @@ TEST(StudyPlan, HasTheKeysOfTheFile) {
 
 TEST(StudyPlan, SpacesValuesEqually) {
     const StudyPlan linear = plan_of(study_with(R"({"key": "a", "from": 1, "to": 2, "count": 5})"));
-    EXPECT_EQ(linear.axes[0].values, (Texts{"1.0", "1.25", "1.5", "1.75", "2.0"}));
+    EXPECT_EQ(linear.axes[0].values, (Texts{"1", "1.25", "1.5", "1.75", "2"}));
     const StudyPlan log = plan_of(study_with(R"({"key": "a", "from": 1, "to": 16, "count": 3, "spacing": "log"})"));
-    EXPECT_EQ(log.axes[0].values, (Texts{"1.0", "4.0", "16.0"}));
+    EXPECT_EQ(log.axes[0].values, (Texts{"1", "4", "16"}));
 }
 
 TEST(StudyPlan, RunsAreAllCombinationsWithTheLastAxisFastest) {
@@ -84,9 +84,18 @@ TEST(StudyPlan, OneRepeatKeepsTheSeedOfTheScene) {
 
 TEST(StudyPlan, RefusesInvalidStudiesInOneLine) {
     const std::string axis = R"({"key": "a", "values": [1]})";
-    EXPECT_NE(refusal_of("{").find("not valid JSON"), std::string::npos);
+    EXPECT_EQ(refusal_of("{"), "not valid JSON at byte 2");
+    EXPECT_EQ(refusal_of(R"({"repeats": 1, "repeats": 2})"), R"(the key "repeats" is there twice, expected it once)");
+    EXPECT_EQ(refusal_of(R"({"ricochet": 1})"),
+              "ricochet: this is a scene, expected a study; `ricochet run` runs a scene");
+    EXPECT_EQ(refusal_of(study_with(axis, R"(, "set": {"a": 2})")),
+              R"(set: "a" is also an axis, expected one of them)");
+    EXPECT_EQ(refusal_of(study_with(R"({"key": "a", "values": [1, 2, 1]})")),
+              "axes[0].values: 1 is there twice, expected each value once");
+    EXPECT_EQ(refusal_of(study_with(R"({"key": "simulation.seed", "values": [1]})", R"(, "repeats": 2)")),
+              R"(repeats: found beside the key "simulation.seed", which repeats set, expected `seed` instead)");
     EXPECT_EQ(refusal_of("[]"), "found a list of 0, expected an object");
-    EXPECT_EQ(refusal_of("{}"), "ricochet_study: is missing, expected it to be given");
+    EXPECT_EQ(refusal_of("{}"), "ricochet_study: is missing, expected to be given; see docs/studies.md");
     EXPECT_EQ(refusal_of(study_with("")), "axes: found a list of 0, expected a list with at least one entry");
     EXPECT_EQ(refusal_of(study_with(axis, R"(, "repeats": 0)")),
               "repeats: found 0, expected a whole number from 1 to 10000");
@@ -108,7 +117,10 @@ TEST(StudyPlan, RefusesInvalidStudiesInOneLine) {
               "axes: more than 100000 runs, expected fewer values or repeats");
 }
 
-TEST(StudyPlan, AMissingFileIsRefused) { EXPECT_THROW((void)read_study("/nowhere/study.json"), InputError); }
+TEST(StudyPlan, AMissingFileIsRefused) {
+    EXPECT_THROW((void)read_study("/nowhere/study.json"), InputError);
+    EXPECT_THROW((void)read_study("/"), InputError);
+}
 
 }  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -13,11 +13,13 @@ namespace RICOCHET_FILE {
 TEST(StudyTable, FindsNumbersInASummaryByTheirPath) {
     const std::string summary =
         R"({"contacts": 3, "interrupted": false, "response": "exact", "energy": {"kinetic": 1.5},
-        "counters": [{"name": "in", "forward": 1}, {"name": "out", "forward": 2}]})";
+        "counters": [{"name": "in", "forward": 1}, {"name": "out", "forward": 2}], "floor.a": {"impulse": [4, 5]}})";
     EXPECT_EQ(number_in_summary(summary, "contacts"), std::optional(3.0));
     EXPECT_EQ(number_in_summary(summary, "interrupted"), std::optional(0.0));
     EXPECT_EQ(number_in_summary(summary, "energy.kinetic"), std::optional(1.5));
     EXPECT_EQ(number_in_summary(summary, "counters.out.forward"), std::optional(2.0));
+    EXPECT_EQ(number_in_summary(summary, "counters.1.forward"), std::optional(2.0));
+    EXPECT_EQ(number_in_summary(summary, "floor.a.impulse.1"), std::optional(5.0));
     for (const char* path : {"response", "counters", "counters.none.forward", "contacts.more", "energy", "", "."}) {
         EXPECT_FALSE(number_in_summary(summary, path)) << path;
     }

@@ -117,6 +117,18 @@ private:
                       "nothing comes of it without friction, resistance to rolling or spinning, or diffuse reflection");
     }
 
+    void warn_about_idle_law(const ObjectView& view, const Material& material) {
+        const auto reverses = [](const ImpactTableRow& row) { return row.tangential_restitution.value_or(0.0) > 0.0; };
+        const bool has_row = std::ranges::any_of(material.impact_table, reverses);
+        if ((material.tangential_restitution > 0.0 || has_row) && material.friction == 0.0) {
+            context_.warn(view, has_row ? "impact_table" : "tangential_restitution",
+                          "nothing comes of a tangential restitution without friction");
+        }
+        if (!material.impact_table.empty() && view.has("restitution")) {
+            context_.warn(view, "restitution", "the impact_table is used instead");
+        }
+    }
+
     void check_impact_law(const ObjectView& view, const Material& material) {
         if (!material.impact_table.empty() && !is_grid(material.impact_table)) {
             context_.error(view, "impact_table",
@@ -127,13 +139,14 @@ private:
             context_.error(view, "restitution_speed", "found beside an impact_table, expected one of them");
         }
         if (material.static_friction && !(*material.static_friction >= material.friction && material.friction > 0.0)) {
-            context_.error(view, "static_friction",
-                           fmt::format("found {:g}, expected at least the friction {:g}, which must be above 0",
-                                       *material.static_friction, material.friction));
+            context_.error(
+                view, "static_friction",
+                material.friction > 0.0
+                    ? fmt::format("found {:g}, expected at least the friction {:g}", *material.static_friction,
+                                  material.friction)
+                    : "found without a friction above 0, expected both keys: a contact that slips has the friction");
         }
-        if (material.tangential_restitution > 0.0 && material.friction == 0.0) {
-            context_.warn(view, "tangential_restitution", "nothing comes of it without friction");
-        }
+        warn_about_idle_law(view, material);
         if (setup_.options.response == ResponseKind::penalty && material.needs_instant_impacts()) {
             context_.error(
                 view,

@@ -17,8 +17,9 @@ namespace {
 
 Fields<PairMaterial> material_fields() {
     constexpr Without kOther{"the value for all spheres"};
-    return joined<PairMaterial>({fields_of<PairMaterial>(kSphereContactTable<PairMaterial>, kOther),
-                                 fields_of<PairMaterial>(kImpactLawTable<PairMaterial>, kOther)});
+    Fields<PairMaterial> law = fields_of<PairMaterial>(kImpactLawTable<PairMaterial>, kOther);
+    for (Field<PairMaterial>& field : law) field.needs = {};  // the needed key may be that for all spheres
+    return joined<PairMaterial>({fields_of<PairMaterial>(kSphereContactTable<PairMaterial>, kOther), law});
 }
 
 const ObjectSpec& own_material_spec() {
@@ -36,10 +37,20 @@ const ObjectSpec& material_pair_spec() {
     return spec;
 }
 
+void warn_about_idle_law(const SceneContext& context, const ObjectView& view, const PairMaterial& material) {
+    if (!view.has("tangential_restitution") || material.tangential_restitution == 0.0 || material.friction > 0.0)
+        return;
+    context.warn(view, "tangential_restitution", "nothing comes of it without friction");
+}
+
 /// Returns the material that an object describes. Members with absent keys have the values that apply to all spheres.
-PairMaterial material_at(const ObjectView& view, const PairContactSettings& all) {
+PairMaterial material_at(const SceneContext& context, const ObjectView& view, const PairContactSettings& all) {
     PairMaterial material = material_of_all(all);
     view.read_into(material);
+    if (view.has("restitution_exponent") && !material.restitution_speed) {
+        context.error(view, "restitution_exponent", "only goes together with the key \"restitution_speed\"");
+    }
+    warn_about_idle_law(context, view, material);
     return material;
 }
 
@@ -48,7 +59,7 @@ void read_pairs(const SceneContext& context, const ObjectView& view, PairContact
     const MaterialNumbers numbers(settings.materials);
     std::set<std::pair<std::size_t, std::size_t>> taken;
     for (const ObjectView& pair : view.objects("pairs")) {
-        MaterialPair read{pair.text("first"), pair.text("second"), material_at(pair, settings)};
+        MaterialPair read{pair.text("first"), pair.text("second"), material_at(context, pair, settings)};
         bool is_known = true;
         for (const char* key : {"first", "second"}) {
             const std::string name = pair.text(key);
@@ -108,9 +119,10 @@ void read_particle_contacts(const SceneContext& context, SimulationOptions& opti
     if (!context.root().has("particle_contacts")) return;
     const ObjectView view = context.root().object("particle_contacts");
     auto settings = view.read<PairContactSettings>();
+    warn_about_idle_law(context, view, material_of_all(settings));
     for (const NamedObject& named : view.named_objects("materials")) {
         settings.materials.push_back(named.name);
-        settings.pairs.push_back({named.name, named.name, material_at(named.view, settings)});
+        settings.pairs.push_back({named.name, named.name, material_at(context, named.view, settings)});
     }
     read_pairs(context, view, settings);
     options.particle_contacts = std::move(settings);

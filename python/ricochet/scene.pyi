@@ -331,6 +331,80 @@ class CacheDeformation(Thing):
         start: Optional[float] = ...,
     ) -> None: ...
 
+class UniformDistribution(Thing):
+    def __init__(
+        self,
+        *,
+        by: Optional[str] = ...,
+        min: float,
+        max: float,
+    ) -> None: ...
+
+class NormalDistribution(Thing):
+    def __init__(
+        self,
+        *,
+        by: Optional[str] = ...,
+        mean: float,
+        deviation: float,
+        min: Optional[float] = ...,
+        max: Optional[float] = ...,
+    ) -> None: ...
+
+class TruncatedNormalDistribution(Thing):
+    def __init__(
+        self,
+        *,
+        by: Optional[str] = ...,
+        mean: float,
+        deviation: float,
+        min: float,
+        max: float,
+    ) -> None: ...
+
+class LogNormalDistribution(Thing):
+    def __init__(
+        self,
+        *,
+        by: Optional[str] = ...,
+        median: float,
+        geometric_deviation: float,
+        min: Optional[float] = ...,
+        max: Optional[float] = ...,
+    ) -> None: ...
+
+class ExponentialDistribution(Thing):
+    def __init__(
+        self,
+        *,
+        by: Optional[str] = ...,
+        mean: float,
+        min: Optional[float] = ...,
+        max: Optional[float] = ...,
+    ) -> None: ...
+
+class RosinRammlerDistribution(Thing):
+    def __init__(
+        self,
+        *,
+        by: Optional[str] = ...,
+        scale: float,
+        exponent: float,
+        min: Optional[float] = ...,
+        max: Optional[float] = ...,
+    ) -> None: ...
+
+class TableDistribution(Thing):
+    def __init__(
+        self,
+        *,
+        by: Optional[str] = ...,
+        points: Sequence[Any],
+        linear: Optional[bool] = ...,
+        min: Optional[float] = ...,
+        max: Optional[float] = ...,
+    ) -> None: ...
+
 class Drawing(Thing):
     def __init__(
         self,
@@ -351,15 +425,20 @@ class PointEmitter(Thing):
         rate: Any = ...,
         rate_per_frame: Any = ...,
         rate_per_area: Any = ...,
+        rate_curve: Optional[Sequence[Any]] = ...,
+        births: Optional[str] = ...,
         start: Optional[float] = ...,
         stop: Optional[float] = ...,
         limit: Optional[int] = ...,
         seed: Optional[int] = ...,
         direction: Optional[Vector] = ...,
         cone: Optional[float] = ...,
+        direction_law: Optional[str] = ...,
         speed: Any = ...,
+        thermal: Any = ...,
         velocity: Optional[Vector] = ...,
         mass: Any = ...,
+        density: Optional[float] = ...,
         lifetime: Any = ...,
         particle_radius: Any = ...,
         frame: Optional[str] = ...,
@@ -383,15 +462,20 @@ class DiskEmitter(Thing):
         rate: Any = ...,
         rate_per_frame: Any = ...,
         rate_per_area: Any = ...,
+        rate_curve: Optional[Sequence[Any]] = ...,
+        births: Optional[str] = ...,
         start: Optional[float] = ...,
         stop: Optional[float] = ...,
         limit: Optional[int] = ...,
         seed: Optional[int] = ...,
         direction: Optional[Vector] = ...,
         cone: Optional[float] = ...,
+        direction_law: Optional[str] = ...,
         speed: Any = ...,
+        thermal: Any = ...,
         velocity: Optional[Vector] = ...,
         mass: Any = ...,
+        density: Optional[float] = ...,
         lifetime: Any = ...,
         particle_radius: Any = ...,
         frame: Optional[str] = ...,
@@ -417,15 +501,20 @@ class BoxEmitter(Thing):
         rate: Any = ...,
         rate_per_frame: Any = ...,
         rate_per_area: Any = ...,
+        rate_curve: Optional[Sequence[Any]] = ...,
+        births: Optional[str] = ...,
         start: Optional[float] = ...,
         stop: Optional[float] = ...,
         limit: Optional[int] = ...,
         seed: Optional[int] = ...,
         direction: Optional[Vector] = ...,
         cone: Optional[float] = ...,
+        direction_law: Optional[str] = ...,
         speed: Any = ...,
+        thermal: Any = ...,
         velocity: Optional[Vector] = ...,
         mass: Any = ...,
+        density: Optional[float] = ...,
         lifetime: Any = ...,
         particle_radius: Any = ...,
         frame: Optional[str] = ...,
@@ -450,15 +539,20 @@ class SphereEmitter(Thing):
         rate: Any = ...,
         rate_per_frame: Any = ...,
         rate_per_area: Any = ...,
+        rate_curve: Optional[Sequence[Any]] = ...,
+        births: Optional[str] = ...,
         start: Optional[float] = ...,
         stop: Optional[float] = ...,
         limit: Optional[int] = ...,
         seed: Optional[int] = ...,
         direction: Optional[Vector] = ...,
         cone: Optional[float] = ...,
+        direction_law: Optional[str] = ...,
         speed: Any = ...,
+        thermal: Any = ...,
         velocity: Optional[Vector] = ...,
         mass: Any = ...,
+        density: Optional[float] = ...,
         lifetime: Any = ...,
         particle_radius: Any = ...,
         frame: Optional[str] = ...,
@@ -484,15 +578,20 @@ class MeshEmitter(Thing):
         rate: Any = ...,
         rate_per_frame: Any = ...,
         rate_per_area: Any = ...,
+        rate_curve: Optional[Sequence[Any]] = ...,
+        births: Optional[str] = ...,
         start: Optional[float] = ...,
         stop: Optional[float] = ...,
         limit: Optional[int] = ...,
         seed: Optional[int] = ...,
         direction: Optional[Vector] = ...,
         cone: Optional[float] = ...,
+        direction_law: Optional[str] = ...,
         speed: Any = ...,
+        thermal: Any = ...,
         velocity: Optional[Vector] = ...,
         mass: Any = ...,
+        density: Optional[float] = ...,
         lifetime: Any = ...,
         particle_radius: Any = ...,
         frame: Optional[str] = ...,
@@ -522,15 +621,20 @@ class ConeEmitter(Thing):
         rate: Any = ...,
         rate_per_frame: Any = ...,
         rate_per_area: Any = ...,
+        rate_curve: Optional[Sequence[Any]] = ...,
+        births: Optional[str] = ...,
         start: Optional[float] = ...,
         stop: Optional[float] = ...,
         limit: Optional[int] = ...,
         seed: Optional[int] = ...,
         direction: Optional[Vector] = ...,
         cone: Optional[float] = ...,
+        direction_law: Optional[str] = ...,
         speed: Any = ...,
+        thermal: Any = ...,
         velocity: Optional[Vector] = ...,
         mass: Any = ...,
+        density: Optional[float] = ...,
         lifetime: Any = ...,
         particle_radius: Any = ...,
         frame: Optional[str] = ...,
@@ -557,15 +661,20 @@ class ChildEmitter(Thing):
         rate: Any = ...,
         rate_per_frame: Any = ...,
         rate_per_area: Any = ...,
+        rate_curve: Optional[Sequence[Any]] = ...,
+        births: Optional[str] = ...,
         start: Optional[float] = ...,
         stop: Optional[float] = ...,
         limit: Optional[int] = ...,
         seed: Optional[int] = ...,
         direction: Optional[Vector] = ...,
         cone: Optional[float] = ...,
+        direction_law: Optional[str] = ...,
         speed: Any = ...,
+        thermal: Any = ...,
         velocity: Optional[Vector] = ...,
         mass: Any = ...,
+        density: Optional[float] = ...,
         lifetime: Any = ...,
         particle_radius: Any = ...,
         frame: Optional[str] = ...,
@@ -1071,6 +1180,14 @@ class Project(Thing):
         offset: Optional[float] = ...,
     ) -> None: ...
 
+class RatePoint(Thing):
+    def __init__(
+        self,
+        *,
+        time: float,
+        rate: float,
+    ) -> None: ...
+
 class ReferenceCamera(Thing):
     def __init__(
         self,
@@ -1258,6 +1375,24 @@ class SurfaceMotion(Thing):
         velocity: Optional[Vector] = ...,
         angular_velocity: Optional[Vector] = ...,
         center: Optional[Vector] = ...,
+    ) -> None: ...
+
+class TablePoint(Thing):
+    def __init__(
+        self,
+        *,
+        value: float,
+        weight: float,
+    ) -> None: ...
+
+class ThermalLaunch(Thing):
+    def __init__(
+        self,
+        *,
+        law: Optional[str] = ...,
+        temperature: float,
+        molecule_mass: float,
+        drift: Optional[float] = ...,
     ) -> None: ...
 
 class Tolerance(Thing):

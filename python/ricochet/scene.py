@@ -473,6 +473,95 @@ class CacheDeformation(Thing):
     _fixed = {"type": "cache"}
 
 
+class UniformDistribution(Thing):
+    """Every value between two ends has the same density.
+
+    by: Measure whose shares the distribution gives. Only for `particle_radius`. Default: "number".
+    min: Smallest value. Required.
+    max: Largest value, above `min`. Required.
+    """
+
+    _fixed = {"type": "uniform"}
+
+
+class NormalDistribution(Thing):
+    """The normal distribution.
+
+    by: Measure whose shares the distribution gives. Only for `particle_radius`. Default: "number".
+    mean: Mean, without the limits. Required.
+    deviation: Standard deviation, without the limits. Required.
+    min: Smaller values are not drawn. The others keep their proportions.
+    max: Larger values are not drawn. The others keep their proportions.
+    """
+
+    _fixed = {"type": "normal"}
+
+
+class TruncatedNormalDistribution(Thing):
+    """The normal distribution between two ends, which must be given.
+
+    by: Measure whose shares the distribution gives. Only for `particle_radius`. Default: "number".
+    mean: Mean, without the limits. Required.
+    deviation: Standard deviation, without the limits. Required.
+    min: Smallest value. Required.
+    max: Largest value, above `min`. Required.
+    """
+
+    _fixed = {"type": "truncated_normal"}
+
+
+class LogNormalDistribution(Thing):
+    """The logarithm of the value has a normal distribution.
+
+    by: Measure whose shares the distribution gives. Only for `particle_radius`. Default: "number".
+    median: Median, without the limits. Required.
+    geometric_deviation: Geometric standard deviation: exp of the standard deviation of the logarithm. Required.
+    min: Smaller values are not drawn. The others keep their proportions.
+    max: Larger values are not drawn. The others keep their proportions.
+    """
+
+    _fixed = {"type": "log_normal"}
+
+
+class ExponentialDistribution(Thing):
+    """Density in proportion to exp(-value / mean), from 0.
+
+    by: Measure whose shares the distribution gives. Only for `particle_radius`. Default: "number".
+    mean: Mean, without the limits. Required.
+    min: Smaller values are not drawn. The others keep their proportions.
+    max: Larger values are not drawn. The others keep their proportions.
+    """
+
+    _fixed = {"type": "exponential"}
+
+
+class RosinRammlerDistribution(Thing):
+    """The fraction exp(-(value / scale)^exponent) lies above a value (Rosin, Rammler, Weibull).
+
+    by: Measure whose shares the distribution gives. Only for `particle_radius`. Default: "number".
+    scale: Value that 36.8 % exceed, without the limits. Required.
+    exponent: Exponent. Larger exponents give a narrower distribution. Required.
+    min: Smaller values are not drawn. The others keep their proportions.
+    max: Larger values are not drawn. The others keep their proportions.
+    """
+
+    _fixed = {"type": "rosin_rammler"}
+
+
+class TableDistribution(Thing):
+    """Values with weights.
+
+    by: Measure whose shares the distribution gives. Only for `particle_radius`. Default: "number".
+    points: Values with their weights, in ascending order. Required.
+    linear: true: the weights are a density, linear between the points. false: only the values of the points are
+        drawn. Default: false.
+    min: Smaller values are not drawn. The others keep their proportions.
+    max: Larger values are not drawn. The others keep their proportions.
+    """
+
+    _fixed = {"type": "table"}
+
+
 class Drawing(Thing):
     """How the particles of an emitter are drawn, if they differ from other particles.
 
@@ -495,16 +584,21 @@ class PointEmitter(Thing):
         Drawn anew for every frame. Default: 0.
     rate_per_area: Instead of `rate`: particles per frame and per pixel that the shape covers in the image of the
         `reference_camera`. Unit: 1/pixel. Default: 0.
+    rate_curve: Instead of `rate`: particles per second over time, linear between the points and constant beyond
+        them.
+    births: Times of the births of a rate. Default: "regular".
     start: Time at which it begins. Unit: s. Default: 0.
     stop: Time at which the rate ends. Unit: s.
     limit: Largest number of births in total. For type `child`: per parent.
     seed: Seed of its own random numbers.
     direction: Launch direction.
-    cone: Half angle of a cone about the direction. Directions are uniform in solid angle. Unit: degrees. Default:
-        0.
+    cone: Half angle of a cone about the direction, in which directions are drawn. Unit: degrees. Default: 0.
+    direction_law: Distribution of the directions in the cone. Default: "uniform".
     speed: Speed along the direction. Unit: m/s. Default: 0.
+    thermal: Thermal velocities, instead of `speed`, `cone` and `direction_law`.
     velocity: Velocity added to direction times speed. Unit: m/s. Default: [0, 0, 0].
     mass: Mass of a particle. Unit: kg. Default: 1.
+    density: Instead of `mass`: density of a solid sphere of the drawn `particle_radius`. Unit: kg/m^3.
     lifetime: Time after birth at which a particle is retired. Unit: s.
     particle_radius: Radius of a particle. Unit: m. Default: 0.
     frame: Name of a frame in `frames`. Shape, direction and velocity are in its coordinates. Particles also get the
@@ -534,16 +628,21 @@ class DiskEmitter(Thing):
         Drawn anew for every frame. Default: 0.
     rate_per_area: Instead of `rate`: particles per frame and per pixel that the shape covers in the image of the
         `reference_camera`. Unit: 1/pixel. Default: 0.
+    rate_curve: Instead of `rate`: particles per second over time, linear between the points and constant beyond
+        them.
+    births: Times of the births of a rate. Default: "regular".
     start: Time at which it begins. Unit: s. Default: 0.
     stop: Time at which the rate ends. Unit: s.
     limit: Largest number of births in total. For type `child`: per parent.
     seed: Seed of its own random numbers.
     direction: Launch direction.
-    cone: Half angle of a cone about the direction. Directions are uniform in solid angle. Unit: degrees. Default:
-        0.
+    cone: Half angle of a cone about the direction, in which directions are drawn. Unit: degrees. Default: 0.
+    direction_law: Distribution of the directions in the cone. Default: "uniform".
     speed: Speed along the direction. Unit: m/s. Default: 0.
+    thermal: Thermal velocities, instead of `speed`, `cone` and `direction_law`.
     velocity: Velocity added to direction times speed. Unit: m/s. Default: [0, 0, 0].
     mass: Mass of a particle. Unit: kg. Default: 1.
+    density: Instead of `mass`: density of a solid sphere of the drawn `particle_radius`. Unit: kg/m^3.
     lifetime: Time after birth at which a particle is retired. Unit: s.
     particle_radius: Radius of a particle. Unit: m. Default: 0.
     frame: Name of a frame in `frames`. Shape, direction and velocity are in its coordinates. Particles also get the
@@ -575,16 +674,21 @@ class BoxEmitter(Thing):
         Drawn anew for every frame. Default: 0.
     rate_per_area: Instead of `rate`: particles per frame and per pixel that the shape covers in the image of the
         `reference_camera`. Unit: 1/pixel. Default: 0.
+    rate_curve: Instead of `rate`: particles per second over time, linear between the points and constant beyond
+        them.
+    births: Times of the births of a rate. Default: "regular".
     start: Time at which it begins. Unit: s. Default: 0.
     stop: Time at which the rate ends. Unit: s.
     limit: Largest number of births in total. For type `child`: per parent.
     seed: Seed of its own random numbers.
     direction: Launch direction.
-    cone: Half angle of a cone about the direction. Directions are uniform in solid angle. Unit: degrees. Default:
-        0.
+    cone: Half angle of a cone about the direction, in which directions are drawn. Unit: degrees. Default: 0.
+    direction_law: Distribution of the directions in the cone. Default: "uniform".
     speed: Speed along the direction. Unit: m/s. Default: 0.
+    thermal: Thermal velocities, instead of `speed`, `cone` and `direction_law`.
     velocity: Velocity added to direction times speed. Unit: m/s. Default: [0, 0, 0].
     mass: Mass of a particle. Unit: kg. Default: 1.
+    density: Instead of `mass`: density of a solid sphere of the drawn `particle_radius`. Unit: kg/m^3.
     lifetime: Time after birth at which a particle is retired. Unit: s.
     particle_radius: Radius of a particle. Unit: m. Default: 0.
     frame: Name of a frame in `frames`. Shape, direction and velocity are in its coordinates. Particles also get the
@@ -615,16 +719,21 @@ class SphereEmitter(Thing):
         Drawn anew for every frame. Default: 0.
     rate_per_area: Instead of `rate`: particles per frame and per pixel that the shape covers in the image of the
         `reference_camera`. Unit: 1/pixel. Default: 0.
+    rate_curve: Instead of `rate`: particles per second over time, linear between the points and constant beyond
+        them.
+    births: Times of the births of a rate. Default: "regular".
     start: Time at which it begins. Unit: s. Default: 0.
     stop: Time at which the rate ends. Unit: s.
     limit: Largest number of births in total. For type `child`: per parent.
     seed: Seed of its own random numbers.
     direction: Launch direction.
-    cone: Half angle of a cone about the direction. Directions are uniform in solid angle. Unit: degrees. Default:
-        0.
+    cone: Half angle of a cone about the direction, in which directions are drawn. Unit: degrees. Default: 0.
+    direction_law: Distribution of the directions in the cone. Default: "uniform".
     speed: Speed along the direction. Unit: m/s. Default: 0.
+    thermal: Thermal velocities, instead of `speed`, `cone` and `direction_law`.
     velocity: Velocity added to direction times speed. Unit: m/s. Default: [0, 0, 0].
     mass: Mass of a particle. Unit: kg. Default: 1.
+    density: Instead of `mass`: density of a solid sphere of the drawn `particle_radius`. Unit: kg/m^3.
     lifetime: Time after birth at which a particle is retired. Unit: s.
     particle_radius: Radius of a particle. Unit: m. Default: 0.
     frame: Name of a frame in `frames`. Shape, direction and velocity are in its coordinates. Particles also get the
@@ -656,16 +765,21 @@ class MeshEmitter(Thing):
         Drawn anew for every frame. Default: 0.
     rate_per_area: Instead of `rate`: particles per frame and per pixel that the shape covers in the image of the
         `reference_camera`. Unit: 1/pixel. Default: 0.
+    rate_curve: Instead of `rate`: particles per second over time, linear between the points and constant beyond
+        them.
+    births: Times of the births of a rate. Default: "regular".
     start: Time at which it begins. Unit: s. Default: 0.
     stop: Time at which the rate ends. Unit: s.
     limit: Largest number of births in total. For type `child`: per parent.
     seed: Seed of its own random numbers.
     direction: Launch direction.
-    cone: Half angle of a cone about the direction. Directions are uniform in solid angle. Unit: degrees. Default:
-        0.
+    cone: Half angle of a cone about the direction, in which directions are drawn. Unit: degrees. Default: 0.
+    direction_law: Distribution of the directions in the cone. Default: "uniform".
     speed: Speed along the direction. Unit: m/s. Default: 0.
+    thermal: Thermal velocities, instead of `speed`, `cone` and `direction_law`.
     velocity: Velocity added to direction times speed. Unit: m/s. Default: [0, 0, 0].
     mass: Mass of a particle. Unit: kg. Default: 1.
+    density: Instead of `mass`: density of a solid sphere of the drawn `particle_radius`. Unit: kg/m^3.
     lifetime: Time after birth at which a particle is retired. Unit: s.
     particle_radius: Radius of a particle. Unit: m. Default: 0.
     frame: Name of a frame in `frames`. Shape, direction and velocity are in its coordinates. Particles also get the
@@ -702,16 +816,21 @@ class ConeEmitter(Thing):
         Drawn anew for every frame. Default: 0.
     rate_per_area: Instead of `rate`: particles per frame and per pixel that the shape covers in the image of the
         `reference_camera`. Unit: 1/pixel. Default: 0.
+    rate_curve: Instead of `rate`: particles per second over time, linear between the points and constant beyond
+        them.
+    births: Times of the births of a rate. Default: "regular".
     start: Time at which it begins. Unit: s. Default: 0.
     stop: Time at which the rate ends. Unit: s.
     limit: Largest number of births in total. For type `child`: per parent.
     seed: Seed of its own random numbers.
     direction: Launch direction.
-    cone: Half angle of a cone about the direction. Directions are uniform in solid angle. Unit: degrees. Default:
-        0.
+    cone: Half angle of a cone about the direction, in which directions are drawn. Unit: degrees. Default: 0.
+    direction_law: Distribution of the directions in the cone. Default: "uniform".
     speed: Speed along the direction. Unit: m/s. Default: 0.
+    thermal: Thermal velocities, instead of `speed`, `cone` and `direction_law`.
     velocity: Velocity added to direction times speed. Unit: m/s. Default: [0, 0, 0].
     mass: Mass of a particle. Unit: kg. Default: 1.
+    density: Instead of `mass`: density of a solid sphere of the drawn `particle_radius`. Unit: kg/m^3.
     lifetime: Time after birth at which a particle is retired. Unit: s.
     particle_radius: Radius of a particle. Unit: m. Default: 0.
     frame: Name of a frame in `frames`. Shape, direction and velocity are in its coordinates. Particles also get the
@@ -735,7 +854,7 @@ class ConeEmitter(Thing):
 
 
 class ChildEmitter(Thing):
-    """Children of another emitter's particles, born at their position with their velocity. `burst`, `start`, `stop`, `rate_per_frame` and `rate_per_area` do not apply.
+    """Children of another emitter's particles, born at their position with their velocity. `burst`, `start`, `stop`, `rate_per_frame`, `rate_per_area`, `rate_curve` and `births` do not apply.
 
     name: Unique name for messages and reports.
     burst: Number of particles born at once at `start`. Default: 0.
@@ -744,16 +863,21 @@ class ChildEmitter(Thing):
         Drawn anew for every frame. Default: 0.
     rate_per_area: Instead of `rate`: particles per frame and per pixel that the shape covers in the image of the
         `reference_camera`. Unit: 1/pixel. Default: 0.
+    rate_curve: Instead of `rate`: particles per second over time, linear between the points and constant beyond
+        them.
+    births: Times of the births of a rate. Default: "regular".
     start: Time at which it begins. Unit: s. Default: 0.
     stop: Time at which the rate ends. Unit: s.
     limit: Largest number of births in total. For type `child`: per parent.
     seed: Seed of its own random numbers.
     direction: Launch direction.
-    cone: Half angle of a cone about the direction. Directions are uniform in solid angle. Unit: degrees. Default:
-        0.
+    cone: Half angle of a cone about the direction, in which directions are drawn. Unit: degrees. Default: 0.
+    direction_law: Distribution of the directions in the cone. Default: "uniform".
     speed: Speed along the direction. Unit: m/s. Default: 0.
+    thermal: Thermal velocities, instead of `speed`, `cone` and `direction_law`.
     velocity: Velocity added to direction times speed. Unit: m/s. Default: [0, 0, 0].
     mass: Mass of a particle. Unit: kg. Default: 1.
+    density: Instead of `mass`: density of a solid sphere of the drawn `particle_radius`. Unit: kg/m^3.
     lifetime: Time after birth at which a particle is retired. Unit: s.
     particle_radius: Radius of a particle. Unit: m. Default: 0.
     frame: Name of a frame in `frames`. Shape, direction and velocity are in its coordinates. Particles also get the
@@ -1386,6 +1510,14 @@ class Project(Thing):
     """
 
 
+class RatePoint(Thing):
+    """A rate at a time.
+
+    time: Time, later than that of the point before. Unit: s. Required.
+    rate: Particles per second at this time. Unit: 1/s. Required.
+    """
+
+
 class ReferenceCamera(Thing):
     """Camera whose image defines emitter rates per pixel. It is part of the scene, not of any picture.
 
@@ -1615,6 +1747,24 @@ class SurfaceMotion(Thing):
     angular_velocity: Rotation by the right-hand rule about an axis through `center`, added to `velocity`. Unit:
         rad/s. Default: [0, 0, 0].
     center: A point on the axis, in world coordinates. Unit: m. Default: [0, 0, 0].
+    """
+
+
+class TablePoint(Thing):
+    """A value and its weight.
+
+    value: Value, above that of the point before. Required.
+    weight: Weight relative to the other points. Required.
+    """
+
+
+class ThermalLaunch(Thing):
+    """Velocities of the molecules of a gas in equilibrium.
+
+    law: Law of the velocities. Default: "volume".
+    temperature: Temperature of the gas. Unit: K. Required.
+    molecule_mass: Mass of a molecule of the gas. Unit: kg. Required.
+    drift: For `effusion`: mean speed of the gas along the direction, before it leaves. Unit: m/s. Default: 0.
     """
 
 

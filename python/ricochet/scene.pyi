@@ -388,6 +388,80 @@ class CacheDeformation(Thing):
         start: Optional[float] = ...,
     ) -> None: ...
 
+class UniformDistribution(Thing):
+    def __init__(
+        self,
+        *,
+        by: Optional[str] = ...,
+        min: float,
+        max: float,
+    ) -> None: ...
+
+class NormalDistribution(Thing):
+    def __init__(
+        self,
+        *,
+        by: Optional[str] = ...,
+        mean: float,
+        deviation: float,
+        min: Optional[float] = ...,
+        max: Optional[float] = ...,
+    ) -> None: ...
+
+class TruncatedNormalDistribution(Thing):
+    def __init__(
+        self,
+        *,
+        by: Optional[str] = ...,
+        mean: float,
+        deviation: float,
+        min: float,
+        max: float,
+    ) -> None: ...
+
+class LogNormalDistribution(Thing):
+    def __init__(
+        self,
+        *,
+        by: Optional[str] = ...,
+        median: float,
+        geometric_deviation: float,
+        min: Optional[float] = ...,
+        max: Optional[float] = ...,
+    ) -> None: ...
+
+class ExponentialDistribution(Thing):
+    def __init__(
+        self,
+        *,
+        by: Optional[str] = ...,
+        mean: float,
+        min: Optional[float] = ...,
+        max: Optional[float] = ...,
+    ) -> None: ...
+
+class RosinRammlerDistribution(Thing):
+    def __init__(
+        self,
+        *,
+        by: Optional[str] = ...,
+        scale: float,
+        exponent: float,
+        min: Optional[float] = ...,
+        max: Optional[float] = ...,
+    ) -> None: ...
+
+class TableDistribution(Thing):
+    def __init__(
+        self,
+        *,
+        by: Optional[str] = ...,
+        points: Sequence[Any],
+        linear: Optional[bool] = ...,
+        min: Optional[float] = ...,
+        max: Optional[float] = ...,
+    ) -> None: ...
+
 class Drawing(Thing):
     def __init__(
         self,
@@ -408,15 +482,20 @@ class PointEmitter(Thing):
         rate: Any = ...,
         rate_per_frame: Any = ...,
         rate_per_area: Any = ...,
+        rate_curve: Optional[Sequence[Any]] = ...,
+        births: Optional[str] = ...,
         start: Optional[float] = ...,
         stop: Optional[float] = ...,
         limit: Optional[int] = ...,
         seed: Optional[int] = ...,
         direction: Optional[Vector] = ...,
         cone: Optional[float] = ...,
+        direction_law: Optional[str] = ...,
         speed: Any = ...,
+        thermal: Any = ...,
         velocity: Optional[Vector] = ...,
         mass: Any = ...,
+        density: Optional[float] = ...,
         lifetime: Any = ...,
         particle_radius: Any = ...,
         frame: Optional[str] = ...,
@@ -440,15 +519,20 @@ class DiskEmitter(Thing):
         rate: Any = ...,
         rate_per_frame: Any = ...,
         rate_per_area: Any = ...,
+        rate_curve: Optional[Sequence[Any]] = ...,
+        births: Optional[str] = ...,
         start: Optional[float] = ...,
         stop: Optional[float] = ...,
         limit: Optional[int] = ...,
         seed: Optional[int] = ...,
         direction: Optional[Vector] = ...,
         cone: Optional[float] = ...,
+        direction_law: Optional[str] = ...,
         speed: Any = ...,
+        thermal: Any = ...,
         velocity: Optional[Vector] = ...,
         mass: Any = ...,
+        density: Optional[float] = ...,
         lifetime: Any = ...,
         particle_radius: Any = ...,
         frame: Optional[str] = ...,
@@ -474,15 +558,20 @@ class BoxEmitter(Thing):
         rate: Any = ...,
         rate_per_frame: Any = ...,
         rate_per_area: Any = ...,
+        rate_curve: Optional[Sequence[Any]] = ...,
+        births: Optional[str] = ...,
         start: Optional[float] = ...,
         stop: Optional[float] = ...,
         limit: Optional[int] = ...,
         seed: Optional[int] = ...,
         direction: Optional[Vector] = ...,
         cone: Optional[float] = ...,
+        direction_law: Optional[str] = ...,
         speed: Any = ...,
+        thermal: Any = ...,
         velocity: Optional[Vector] = ...,
         mass: Any = ...,
+        density: Optional[float] = ...,
         lifetime: Any = ...,
         particle_radius: Any = ...,
         frame: Optional[str] = ...,
@@ -507,15 +596,20 @@ class SphereEmitter(Thing):
         rate: Any = ...,
         rate_per_frame: Any = ...,
         rate_per_area: Any = ...,
+        rate_curve: Optional[Sequence[Any]] = ...,
+        births: Optional[str] = ...,
         start: Optional[float] = ...,
         stop: Optional[float] = ...,
         limit: Optional[int] = ...,
         seed: Optional[int] = ...,
         direction: Optional[Vector] = ...,
         cone: Optional[float] = ...,
+        direction_law: Optional[str] = ...,
         speed: Any = ...,
+        thermal: Any = ...,
         velocity: Optional[Vector] = ...,
         mass: Any = ...,
+        density: Optional[float] = ...,
         lifetime: Any = ...,
         particle_radius: Any = ...,
         frame: Optional[str] = ...,
@@ -541,15 +635,20 @@ class MeshEmitter(Thing):
         rate: Any = ...,
         rate_per_frame: Any = ...,
         rate_per_area: Any = ...,
+        rate_curve: Optional[Sequence[Any]] = ...,
+        births: Optional[str] = ...,
         start: Optional[float] = ...,
         stop: Optional[float] = ...,
         limit: Optional[int] = ...,
         seed: Optional[int] = ...,
         direction: Optional[Vector] = ...,
         cone: Optional[float] = ...,
+        direction_law: Optional[str] = ...,
         speed: Any = ...,
+        thermal: Any = ...,
         velocity: Optional[Vector] = ...,
         mass: Any = ...,
+        density: Optional[float] = ...,
         lifetime: Any = ...,
         particle_radius: Any = ...,
         frame: Optional[str] = ...,
@@ -579,15 +678,20 @@ class ConeEmitter(Thing):
         rate: Any = ...,
         rate_per_frame: Any = ...,
         rate_per_area: Any = ...,
+        rate_curve: Optional[Sequence[Any]] = ...,
+        births: Optional[str] = ...,
         start: Optional[float] = ...,
         stop: Optional[float] = ...,
         limit: Optional[int] = ...,
         seed: Optional[int] = ...,
         direction: Optional[Vector] = ...,
         cone: Optional[float] = ...,
+        direction_law: Optional[str] = ...,
         speed: Any = ...,
+        thermal: Any = ...,
         velocity: Optional[Vector] = ...,
         mass: Any = ...,
+        density: Optional[float] = ...,
         lifetime: Any = ...,
         particle_radius: Any = ...,
         frame: Optional[str] = ...,
@@ -614,15 +718,20 @@ class ChildEmitter(Thing):
         rate: Any = ...,
         rate_per_frame: Any = ...,
         rate_per_area: Any = ...,
+        rate_curve: Optional[Sequence[Any]] = ...,
+        births: Optional[str] = ...,
         start: Optional[float] = ...,
         stop: Optional[float] = ...,
         limit: Optional[int] = ...,
         seed: Optional[int] = ...,
         direction: Optional[Vector] = ...,
         cone: Optional[float] = ...,
+        direction_law: Optional[str] = ...,
         speed: Any = ...,
+        thermal: Any = ...,
         velocity: Optional[Vector] = ...,
         mass: Any = ...,
+        density: Optional[float] = ...,
         lifetime: Any = ...,
         particle_radius: Any = ...,
         frame: Optional[str] = ...,
@@ -1149,6 +1258,14 @@ class Project(Thing):
         offset: Optional[float] = ...,
     ) -> None: ...
 
+class RatePoint(Thing):
+    def __init__(
+        self,
+        *,
+        time: float,
+        rate: float,
+    ) -> None: ...
+
 class ReferenceCamera(Thing):
     def __init__(
         self,
@@ -1350,6 +1467,24 @@ class SurfaceMotion(Thing):
         velocity: Optional[Vector] = ...,
         angular_velocity: Optional[Vector] = ...,
         center: Optional[Vector] = ...,
+    ) -> None: ...
+
+class TablePoint(Thing):
+    def __init__(
+        self,
+        *,
+        value: float,
+        weight: float,
+    ) -> None: ...
+
+class ThermalLaunch(Thing):
+    def __init__(
+        self,
+        *,
+        law: Optional[str] = ...,
+        temperature: float,
+        molecule_mass: float,
+        drift: Optional[float] = ...,
     ) -> None: ...
 
 class Tolerance(Thing):

@@ -121,6 +121,11 @@ Json value_schema(const KeySpec& key) {
             return scale_schema(key);
         case ValueType::pair:
             return pair_schema(key);
+        case ValueType::drawn: {
+            Json schema = pair_schema(key);
+            schema["oneOf"].push_back(reference_to(*key.content));
+            return schema;
+        }
         case ValueType::object:
             return reference_to(*key.content);
         case ValueType::named_object:
@@ -428,6 +433,7 @@ std::string scene_reference() {
     text += object_section("motion of a collider (a list)", detail::key_pose_spec());
     text += object_section("histogram of a counter (a list)", detail::histogram_spec());
     text += object_section("deformation of a mesh", detail::deformation_spec());
+    text += object_section("distribution of a drawn value", detail::distribution_spec());
     text += object_section("cloud of an emitter", detail::cloud_spec());
     text += object_section("drawing of an emitter", detail::drawing_spec());
     text += object_section("curve", detail::number_curve_spec());

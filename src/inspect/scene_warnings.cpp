@@ -112,9 +112,9 @@ Starts starts_of(const Simulation& simulation, std::span<const Solid> moving, co
                  std::size_t index) {
     Starts starts{name_in_list("emitters", index, emitter.name),
                   {},
-                  emitter.radius.mean + emitter.radius.spread,
+                  emitter.radius.most(),
                   0,
-                  std::fabs(emitter.speed.mean) + emitter.speed.spread + length(emitter.velocity)};
+                  most_speed(emitter) + length(emitter.velocity)};
     for (const Particle& particle : drawn_starts(emitter, index, kDrawnStarts)) {
         if (overlaps(simulation, moving, particle)) {
             ++starts.overlapping;

@@ -87,9 +87,10 @@ std::string name_in_list(std::string_view list, std::size_t index, const std::st
 std::vector<Particle> drawn_starts(const EmitterDescription& emitter, std::size_t index, std::size_t count) {
     std::vector<Particle> starts(count);
     const ShapeSampler sampler(emitter.shape);
+    const Quantile radius = quantile_of(emitter.radius);
     RandomSequence random(0, 0, index);
     for (Particle& particle : starts) {
-        particle.radius = random.uniform_around(emitter.radius.mean, emitter.radius.spread);
+        particle.radius = radius(random.uniform());
         particle.position = sampler.draw(particle.radius, random).position;
         particle.birth_time = emitter.start;
         if (emitter.frames) particle = launched_from(*emitter.frames, emitter.frame, particle);

@@ -23,6 +23,8 @@
 #include "ricochet/core/symmetric_matrix.h"
 #include "ricochet/core/transform.h"
 #include "ricochet/core/vec3.h"
+#include "ricochet/dynamics/birth_schedule.h"
+#include "ricochet/dynamics/distribution.h"
 #include "ricochet/dynamics/driven_body.h"
 #include "ricochet/dynamics/emitter.h"
 #include "ricochet/dynamics/flows.h"

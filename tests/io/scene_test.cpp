@@ -310,8 +310,7 @@ const std::vector<Spoiled> kSpoiled = {
      "s.json:1:63: particles[0].mass: found 0, expected a number >= 1e-300 (kg)"},
     {R"("emitters": [{"type": "point", "burst": 1, "mass": [1, 1]}])",
      "s.json:1:68: emitters[0].mass: found [1, 1], so down to 0; expected a number >= 1e-300 (kg) or [mean, spread] "
-     "with "
-     "spread >= 0 and mean - spread >= 1e-300"},
+     "with spread >= 0 and mean - spread >= 1e-300, or a distribution {\"type\": ...}"},
     {R"("emitters": [{"type": "point", "burst": 1, "start": 2, "stop": 1}], "simulation": {"duration": 9})",
      "s.json:1:80: emitters[0].stop: found 1 s, expected a time after start (2 s)"},
     {R"("emitters": [{"type": "point", "rate": 1e10}])",

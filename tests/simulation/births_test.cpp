@@ -115,8 +115,48 @@ SimulationSetup crowd() {
     return setup;
 }
 
+/// Returns emitters with random times, rate curves, distributions, the cosine law and thermal velocities.
+SimulationSetup random_kinds() {
+    SimulationSetup setup = setup_of(0.02, 0.6, {}, {0, 0, -9.81});
+    setup.options.seed = 5;
+    setup.colliders.push_back({"floor", PlaneShape{{}, {0, 0, 1}}, 0});
+    std::uint32_t number = 0;
+    for (const EmitterShape& shape : all_shapes()) {
+        EmitterDescription emitter;
+        emitter.name = "emitter " + std::to_string(number);
+        emitter.shape = shape;
+        emitter.spacing = BirthSpacing::poisson;
+        if (number % 2 == 0) {
+            emitter.rate = {200.0, number % 4 == 0 ? 0.0 : 50.0};
+        } else {
+            emitter.rate_curve = {{0.0, 0.0}, {0.2, 400.0}, {0.5, 100.0}};
+        }
+        emitter.direction = {0.1, 0.2, 1};
+        emitter.density = 1000.0;
+        Distribution sizes;
+        sizes.law = DistributionLaw::rosin_rammler;
+        sizes.center = 0.02;
+        sizes.width = 2.5;
+        sizes.min = 0.005;
+        sizes.max = 0.05;
+        sizes.by = DistributionBasis::mass;
+        emitter.radius = sizes;
+        if (number % 3 == 0) {
+            emitter.direction_law = DirectionLaw::cosine;
+            emitter.cone_degrees = 90.0;
+            emitter.speed = {1.0, 0.5};
+        } else {
+            const ThermalLaw law = number % 3 == 1 ? ThermalLaw::effusion : ThermalLaw::volume;
+            emitter.thermal = ThermalLaunch{law, 300.0, 1e-20, law == ThermalLaw::effusion ? 0.3 : 0.0};
+        }
+        setup.emitters.push_back(std::move(emitter));
+        ++number;
+    }
+    return setup;
+}
+
 TEST(Births, BitsDoNotDependOnTheNumberOfThreads) {
-    for (SimulationSetup (*make)() : {every_kind, crowd}) {
+    for (SimulationSetup (*make)() : {every_kind, crowd, random_kinds}) {
         std::vector<Outcome> outcomes;
         for (const int threads : {1, 2, 7}) {
             const ThreadLimit limit(threads);
@@ -132,6 +172,7 @@ TEST(Births, RanksTogetherGiveTheBitsOfOneProcess) {
     for (const std::size_t count : {1U, 2U, 3U, 5U}) {
         EXPECT_EQ(difference(run_on(count, every_kind), alone), "none") << count << " ranks";
     }
+    EXPECT_EQ(difference(run_on(3, random_kinds), run(random_kinds, nullptr)), "none");
 }
 
 // Checks that the scenes exercise their features.

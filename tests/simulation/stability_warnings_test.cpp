@@ -382,5 +382,16 @@ TEST(StabilityWarnings, DragWarningUsesTheLightestAndLargestParticleOfAnEmitter)
         << warnings[0];
 }
 
+TEST(StabilityWarnings, DragWarningPairsTheSmallestRadiusWithTheMassOfItsDensity) {
+    SimulationSetup setup = setup_of(0.01, 0.1);
+    setup.emitters.resize(1);
+    setup.emitters[0].density = 1000.0;
+    setup.emitters[0].radius = {0.003, 0.002};
+    setup.forces.push_back(make_stokes_drag(1.0));
+    const std::vector<std::string> warnings = warnings_of(std::move(setup));
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("(mass 4.19e-06 kg, radius 0.001 m"), std::string::npos) << warnings[0];
+}
+
 }  // namespace RICOCHET_FILE
 }  // namespace ricochet

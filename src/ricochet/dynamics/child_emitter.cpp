@@ -96,7 +96,7 @@ LifeBirths births_in_life(const Emitter& emitter, const Particle& parent, double
 
 std::uint32_t children_of_event(const Emitter& emitter, const Particle& parent, std::uint32_t event) {
     const std::uint64_t key = mixed_key(parent.origin.lineage, emitter.number(), ~event);
-    const double count = emitter.draw_once(key, kCountPurpose, emitter.description().parent->count);
+    const double count = emitter.draw_count(key, kCountPurpose);
     return static_cast<std::uint32_t>(std::clamp(std::floor(count + 0.5), 0.0, kMostChildren));
 }
 

@@ -21,16 +21,12 @@
 #include "ricochet/core/keyed_curve.h"
 #include "ricochet/core/random.h"
 #include "ricochet/core/vec3.h"
+#include "ricochet/dynamics/birth_schedule.h"
+#include "ricochet/dynamics/distribution.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {
-
-/// Uniform distribution over [mean - spread, mean + spread).
-struct MeanSpread {
-    double mean = 0.0;
-    double spread = 0.0;  ///< >= 0
-};
 
 // Births of particles from other particles.
 
@@ -65,7 +61,7 @@ struct ParentRule {
     bool recursive = false;     ///< true: the children become parents too
     BirthEvent on = BirthEvent::life;
     /// Number of children per death, impact or birth; draws are rounded, negative draws count as 0.
-    MeanSpread count{1.0, 0.0};
+    DrawnValue count{1.0, 0.0};
     double threshold_impulse = 0.0;  ///< least impulse, in N s, of an impact that gives birth; >= 0
     /// True if the parent ends and the children share its mass and momentum. EmitterDescription::mass is then the
     /// weight of a share, and radii follow from the parent's density. Not available for BirthEvent::life.
@@ -201,6 +197,32 @@ struct ReferenceCamera {
 
 // The emitter itself.
 
+/// Distribution of launch directions in a cone about the direction.
+enum class DirectionLaw {
+    uniform,  ///< uniform in solid angle
+    cosine,   ///< in proportion to the cosine of the angle (Lambert's law), for cones of at most 90 degrees
+};
+
+/// Law of thermal velocities.
+enum class ThermalLaw {
+    volume,    ///< velocities of the molecules in a volume: each component is normal (Maxwell)
+    effusion,  ///< velocities of the molecules that leave through an opening, in proportion to their normal speed
+};
+
+/// Launch velocities of gas molecules.
+struct ThermalLaunch {
+    ThermalLaw law = ThermalLaw::volume;
+    double temperature = 0.0;    ///< in K, > 0
+    double molecule_mass = 0.0;  ///< in kg, > 0; independent of EmitterDescription::mass
+    /// For effusion: mean speed of the gas along the direction, in m/s, at most 1000 thermal speeds.
+    double drift = 0.0;
+};
+
+/// Returns the fault of values outside the stated ranges; empty for sound values.
+[[nodiscard]] std::string thermal_problem(const ThermalLaunch& thermal);
+/// Returns the standard deviation of each component of the thermal velocities, in m/s.
+[[nodiscard]] double thermal_speed(const ThermalLaunch& thermal);
+
 /// Mean and spread of an attribute, for each component.
 struct AttributeSpread {
     std::string name;  ///< name of one of the scene's attributes, including the columns of appearance
@@ -214,6 +236,9 @@ struct EmitterDescription {
     EmitterShape shape;
     std::uint64_t burst = 0;  ///< particles born together at `start`
     MeanSpread rate;          ///< particles per second from `start` to `stop`, drawn anew for every second
+    /// Alternative rate: particles per second as a function of the simulation time. It is linear between the points,
+    /// and constant before the first and after the last one. Ascending times.
+    std::vector<RatePoint> rate_curve;
     /// Alternative rate: particles per frame (EmitterSurroundings::frame_rate), drawn anew for every frame.
     MeanSpread rate_per_frame;
     /// Alternative rate: particles per frame and per pixel of the shape's screen_area().
@@ -225,11 +250,12 @@ struct EmitterDescription {
     Vec3 direction;
     /// Half angle, 0..180, of the cone about the direction; launches are uniform in solid angle.
     double cone_degrees = 0.0;
-    MeanSpread speed;                                                   ///< in m/s
+    DirectionLaw direction_law = DirectionLaw::uniform;
+    DrawnValue speed;                                                   ///< in m/s
     Vec3 velocity;                                                      ///< in m/s, added to direction * speed
-    MeanSpread mass{1.0, 0.0};                                          ///< in kg, mean - spread > 0
-    MeanSpread radius;                                                  ///< in m, mean - spread >= 0; 0 is a point
-    MeanSpread lifetime{std::numeric_limits<double>::infinity(), 0.0};  ///< in s
+    DrawnValue mass{1.0, 0.0};                                          ///< in kg, > 0
+    DrawnValue radius;                                                  ///< in m, >= 0; 0 is a point
+    DrawnValue lifetime{std::numeric_limits<double>::infinity(), 0.0};  ///< in s
     std::uint64_t limit = std::numeric_limits<std::uint64_t>::max();    ///< largest total number of births
     /// Frames of the scene, or null: shape, direction and velocity are then in world coordinates. Otherwise they are in
     /// the coordinates of frame number `frame` at the time of birth, see launched_from().
@@ -241,7 +267,23 @@ struct EmitterDescription {
     std::optional<std::uint64_t> seed;
     /// Rule for births from other particles. Burst, start and stop are then unused, and only clouds use the shape.
     std::optional<ParentRule> parent;
+    BirthSpacing spacing = BirthSpacing::regular;  ///< spacing of the births of a rate
+    /// Density, in kg/m^3, from which the mass follows instead of `mass`. Radii must then be above 0.
+    std::optional<double> density = std::nullopt;
+    /// Thermal velocities instead of cone and speed. For effusion, `direction` or the shape gives the direction.
+    std::optional<ThermalLaunch> thermal = std::nullopt;
 };
+
+/// Returns the mass of a sphere, in kg. density: in kg/m^3. radius: in m.
+[[nodiscard]] double sphere_mass(double density, double radius);
+/// Return bounds of the masses that the emitter draws, in kg.
+[[nodiscard]] double least_mass(const EmitterDescription& emitter);
+[[nodiscard]] double most_mass(const EmitterDescription& emitter);
+/// Returns the expected mass, in kg, for a density the mass of the sphere of the expected radius.
+[[nodiscard]] double expected_mass(const EmitterDescription& emitter);
+/// Returns an upper bound of the launch speed along the direction, in m/s, without `velocity`. Thermal speeds are
+/// larger with a probability below 1e-7.
+[[nodiscard]] double most_speed(const EmitterDescription& emitter);
 
 /// Returns true if the emitter's particles move with their parents.
 [[nodiscard]] inline bool is_cloud(const EmitterDescription& emitter) {
@@ -258,11 +300,7 @@ struct EmitterSurroundings {
 /// Test that returns true if a particle, in world coordinates, may be born at its position. The test must be pure.
 using BirthTest = std::function<bool(const Particle&)>;
 
-/// Scheduled birth.
-struct DueBirth {
-    std::uint64_t number = 0;  ///< number of the birth within its emitter
-    double time = 0.0;         ///< in s
-};
+class Launch;
 
 /// Births of one emitter in time order.
 class Emitter {
@@ -293,7 +331,7 @@ public:
                                                std::uint64_t most = std::numeric_limits<std::uint64_t>::max(),
                                                const BirthTest& test = {});
     /// Returns the number of births so far, including rejected births.
-    [[nodiscard]] std::uint64_t born() const { return born_; }
+    [[nodiscard]] std::uint64_t born() const { return schedule_.born(); }
     /// Returns the number of births that the test of births() has rejected.
     [[nodiscard]] std::uint64_t refused() const { return refused_; }
 
@@ -321,22 +359,18 @@ public:
     /// Returns a uniform number in [mean - spread, mean + spread) that does not belong to a single particle. purpose:
     /// number of its stream, 0..255.
     [[nodiscard]] double draw_once(std::uint64_t seed, std::uint32_t purpose, const MeanSpread& pair) const;
+    /// Returns a number of children, before rounding, drawn in the same way. The emitter must have a parent rule.
+    [[nodiscard]] double draw_count(std::uint64_t seed, std::uint32_t purpose) const;
     /// Returns the index of the attribute's column; nothing if there is no such column.
     [[nodiscard]] std::optional<std::size_t> column(std::string_view name) const;
     /// Returns true if the description gives values for the attribute of a column.
     [[nodiscard]] bool sets(std::size_t column) const;
 
 private:
-    /// Births taken from the schedule.
-    struct Taken {
-        std::uint64_t most;  ///< largest allowed count
-        bool is_listed;      ///< true: the births are stored in `list`
-        std::uint64_t count = 0;
-        std::vector<DueBirth> list{};
-    };
     struct Draw {
         Particle particle;
         double speed = 0.0;  ///< launch speed along the direction, in m/s
+        Vec3 thermal;        ///< thermal velocity, in m/s, see Launch::thermal_velocity()
     };
     [[nodiscard]] Draw draw(RandomSequence& random, std::uint64_t seed, std::uint64_t number) const;
     [[nodiscard]] Vec3 draw_place(RandomSequence& random, Particle& particle) const;
@@ -344,14 +378,9 @@ private:
     template <class Made>
     [[nodiscard]] std::optional<Particle> place_by(const BirthTest& test, RandomSequence& random, Draw& drawn,
                                                    const Made& made) const;
-    void set_rate(const EmitterSurroundings& surroundings);
+    [[nodiscard]] Vec3 velocity(const Draw& drawn, const Vec3& direction) const;
+    [[nodiscard]] BirthPlan plan(const EmitterSurroundings& surroundings) const;
     [[nodiscard]] std::vector<AttributeValue> draw_attributes(std::uint64_t seed, std::uint64_t number) const;
-    [[nodiscard]] Vec3 in_cone(const Vec3& axis, RandomSequence& random) const;
-    [[nodiscard]] double rate_in_period(std::uint64_t period) const;
-    void take(double to, Taken& taken);
-    std::uint64_t take_at(double time, std::uint64_t count, Taken& taken);
-    void take_steady(double to, Taken& taken);
-    void take_redrawn(double to, Taken& taken);
 
     EmitterDescription description_;
     std::uint64_t seed_;
@@ -361,15 +390,9 @@ private:
     ShapeSampler shape_;
     std::vector<AttributeDescription> columns_;
     std::vector<std::size_t> attribute_columns_;  ///< columns of the description's attributes
-    double cone_height_ = 0.0;                    ///< 1 - cos(cone angle)
-    MeanSpread period_rate_;                      ///< particles per period
-    double periods_per_second_ = 1.0;             ///< 1, or the frame rate
-    std::uint64_t born_ = 0;
+    std::shared_ptr<const Launch> launch_;
+    BirthSchedule schedule_;
     std::uint64_t refused_ = 0;
-    std::uint64_t burst_born_ = 0;
-    std::uint64_t period_ = 0;  ///< whole periods since start that are included in expected_
-    double expected_ = 0.0;     ///< integral of the rate up to period_
-    std::uint64_t rate_born_ = 0;
 };
 
 }  // namespace ricochet

@@ -23,8 +23,8 @@ constexpr std::size_t kFewBirths = 16;
 constexpr std::uint64_t kReplaySlices = 1000;
 
 bool makes_spheres(const Emitter& emitter) {
-    const MeanSpread& radius = emitter.description().radius;
-    return radius.mean + radius.spread > 0.0;
+    const DrawnValue& radius = emitter.description().radius;
+    return radius.distribution || radius.mean + radius.spread > 0.0;
 }
 
 std::vector<Emitter> make_emitters(SimulationSetup& setup) {

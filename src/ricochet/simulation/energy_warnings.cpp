@@ -111,11 +111,11 @@ std::optional<Subject> subject_of(const EmitterDescription& emitter, std::size_t
     const Vec3 direction = length_of_direction > 0.0 ? emitter.direction / length_of_direction : Vec3{1, 0, 0};
     Subject subject;
     subject.state.position = bounds(emitter.shape).center();
-    subject.state.velocity = emitter.velocity + emitter.speed.mean * direction;
-    subject.state.mass = emitter.mass.mean;
-    subject.state.radius = emitter.radius.mean;
+    subject.state.velocity = emitter.velocity + emitter.speed.expected() * direction;
+    subject.state.mass = expected_mass(emitter);
+    subject.state.radius = emitter.radius.expected();
     subject.state.id = std::numeric_limits<std::uint64_t>::max();
-    subject.lifetime = emitter.lifetime.mean;
+    subject.lifetime = emitter.lifetime.expected();
     subject.name = "a particle of " + named(emitter.name, "emitters", number);
     return subject;
 }

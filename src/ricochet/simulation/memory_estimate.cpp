@@ -80,9 +80,12 @@ double sure_population(const EmitterDescription& emitter, const SimulationSetup&
     const SimulationOptions& options = setup.options;
     if (emitter.parent || !(emitter.start < options.duration)) return 0.0;
     const double time = std::max(0.0, std::min(options.duration, emitter.stop) - emitter.start);
-    const double life = may_retire_early(setup) ? options.time_step : emitter.lifetime.mean;
+    const double life = may_retire_early(setup) ? options.time_step : emitter.lifetime.expected();
     const double rate = rate_of(emitter, setup);
-    const double by_rate = rate > 0.0 ? rate * std::min(time, life) : 0.0;
+    // With a rate curve, the particles born last certainly live at once.
+    const double end = emitter.start + time;
+    const double by_rate = rate > 0.0 ? rate * std::min(time, life)
+                                      : births_of_curve(emitter.rate_curve, std::max(emitter.start, end - life), end);
     return std::min(static_cast<double>(emitter.burst) + by_rate, static_cast<double>(emitter.limit));
 }
 

@@ -68,7 +68,7 @@ LightestPair lightest_of(const SimulationSetup& setup, const ParticlesForceEntry
     for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
         const EmitterDescription& emitter = setup.emitters[k];
         if (!acts_on_emitter(entry, k) || (emitter.parent && emitter.parent->share)) continue;
-        const double mass = emitter.mass.mean - emitter.mass.spread;
+        const double mass = least_mass(emitter);
         lightest.add(mass);
         lightest.add(mass);
         lightest.count = std::numeric_limits<double>::infinity();
@@ -173,21 +173,22 @@ struct DraggedParticle {
 };
 
 /// Returns the particles of an emitter that drag affects most: the lightest, largest and fastest particle in each
-/// possible direction. Returns nothing for clouds, and for fragments, whose masses are known only during the run.
+/// possible direction. With a density, the lightest particle is the smallest one. Returns nothing for clouds, and for
+/// fragments, whose masses are known only during the run.
 std::vector<DraggedParticle> most_dragged_of(const EmitterDescription& emitter, std::size_t number) {
-    const double lightest = emitter.mass.mean - emitter.mass.spread;
+    const double lightest = least_mass(emitter);
     if (!(lightest > 0.0) || is_cloud(emitter) || (emitter.parent && emitter.parent->share)) return {};
     const bool has_any_path = length_squared(emitter.direction) == 0.0;
     std::vector<Vec3> headings{emitter.direction};
     if (has_any_path) headings = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-    const double speed = std::abs(emitter.speed.mean) + emitter.speed.spread;
+    const double speed = most_speed(emitter);
     std::vector<DraggedParticle> particles;
     for (const Vec3& heading : headings) {
         Particle particle;
         particle.position = bounds(emitter.shape).center();
         particle.velocity = emitter.velocity + (speed / length(heading)) * heading;
         particle.mass = lightest;
-        particle.radius = emitter.radius.mean + emitter.radius.spread;
+        particle.radius = emitter.density ? emitter.radius.least() : emitter.radius.most();
         particle.birth_time = emitter.start;
         if (emitter.frames) particle = launched_from(*emitter.frames, emitter.frame, particle);
         const ForceInput state{particle.position, particle.velocity,   particle.mass,
@@ -285,7 +286,7 @@ std::optional<std::string> drag_warning(const SimulationSetup& setup) {
 /// Returns true if children overlap other particles at their births. Children start at the position of their parent.
 /// Therefore two children of one event overlap each other, and a child overlaps a parent that lives on.
 bool is_born_beside_others(const ParentRule& rule) {
-    return (!rule.share && rule.on != BirthEvent::death) || rule.count.mean + rule.count.spread >= 1.5;
+    return (!rule.share && rule.on != BirthEvent::death) || rule.count.most() >= 1.5;
 }
 
 std::vector<std::string> birth_warnings(const SimulationSetup& setup) {

@@ -18,7 +18,7 @@ namespace {
 double lightest_particle(const SimulationSetup& setup) {
     double lightest = std::numeric_limits<double>::infinity();
     for (const Particle& particle : setup.particles) lightest = std::min(lightest, particle.mass);
-    for (const auto& emitter : setup.emitters) lightest = std::min(lightest, emitter.mass.mean - emitter.mass.spread);
+    for (const auto& emitter : setup.emitters) lightest = std::min(lightest, least_mass(emitter));
     return lightest;
 }
 

@@ -114,7 +114,8 @@ double most_births(const EmitterDescription& emitter, const SimulationOptions& o
     const double rate = emitter.rate.mean + emitter.rate.spread +
                         (emitter.rate_per_frame.mean + emitter.rate_per_frame.spread) * options.frame_rate;
     const double time = std::max(0.0, std::min(options.duration, emitter.stop) - emitter.start);
-    const double births = static_cast<double>(emitter.burst) + (time > 0.0 ? rate * time : 0.0);
+    const double births = static_cast<double>(emitter.burst) + (time > 0.0 ? rate * time : 0.0) +
+                          births_of_curve(emitter.rate_curve, emitter.start, emitter.start + time);
     return std::min(births, static_cast<double>(emitter.limit));
 }
 

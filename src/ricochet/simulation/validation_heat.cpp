@@ -56,7 +56,7 @@ void validate_particles(const SimulationSetup& setup, std::size_t column) {
         const EmitterDescription& emitter = setup.emitters[k];
         const Subject subject("emitter", k, emitter.name);
         const bool is_shared = emitter.parent && emitter.parent->share;  // radii follow from the parent's radius
-        if (!is_shared) validate_radius(subject, *setup.heat, emitter.radius.mean - emitter.radius.spread);
+        if (!is_shared) validate_radius(subject, *setup.heat, emitter.radius.least());
         for (const AttributeSpread& spread : emitter.attributes) {
             if (spread.name != kTemperatureAttribute) continue;
             require_temperature(subject, spread.mean.x - spread.spread.x, "least temperature");

@@ -156,8 +156,8 @@ void validate_particle_contacts(const SimulationSetup& setup) {
     for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
         const EmitterDescription& emitter = setup.emitters[k];
         if (emitter.parent && emitter.parent->share) continue;  // masses follow from the parent's mass
-        require_mass(Subject("emitter", k, emitter.name), emitter.mass.mean - emitter.mass.spread);
-        require_mass(Subject("emitter", k, emitter.name), emitter.mass.mean + emitter.mass.spread);
+        require_mass(Subject("emitter", k, emitter.name), least_mass(emitter));
+        require_mass(Subject("emitter", k, emitter.name), most_mass(emitter));
     }
     if (!contacts.materials.empty()) validate_column(setup, subject);
     validate_company(setup, subject);

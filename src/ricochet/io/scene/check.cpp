@@ -256,6 +256,8 @@ private:
                 return check_object(node, *key.content, path);
             case ValueType::named_object:
                 return check_named_object(node, key, path);
+            case ValueType::drawn:
+                return check_drawn(node, key, path);
             case ValueType::list:
                 return check_list(node, key, path);
             case ValueType::list_or_file:
@@ -274,6 +276,14 @@ private:
         if (node.object() != nullptr) {
             check_object(node, *key.content, path);
         } else if (const Problem problem = text_problem(node, key)) {
+            refuse(node, path, *problem);
+        }
+    }
+
+    void check_drawn(JsonNode& node, const KeySpec& key, const std::string& path) {
+        if (node.object() != nullptr) {
+            check_object(node, *key.content, path);
+        } else if (const Problem problem = pair_problem(node, key)) {
             refuse(node, path, *problem);
         }
     }

@@ -139,7 +139,7 @@ Variant child_variant() {
     return variant<C>(
         "child",
         "Children of another emitter's particles, born at their position with their velocity. `burst`, `start`, "
-        "`stop`, `rate_per_frame` and `rate_per_area` do not apply.",
+        "`stop`, `rate_per_frame`, `rate_per_area`, `rate_curve` and `births` do not apply.",
         {{"parent", &C::parent, "Name of the emitter whose particles are the parents.", kRequired},
          {"on", &C::on, "Event at which parents give birth.",
           Choices{choice(On::life, "life", "during their whole life, at `rate`, which is drawn once per parent"),
@@ -147,7 +147,7 @@ Variant child_variant() {
                   choice(On::impact, "impact", "at impacts of at least `threshold_impulse`"),
                   choice(On::birth, "birth", "at their own birth")}},
          {"count", &C::count, between(0.0, 1e6), "",
-          "Number of children per death, impact or birth, rounded to a whole number."},
+          "Number of children per death, impact or birth, rounded to a whole number.", &distribution_spec()},
          {"threshold_impulse", &C::threshold_impulse, kNotNegative, "N s",
           "Smallest impulse of an impact that gives birth."},
          {"share", &C::share,
@@ -170,7 +170,8 @@ Variant child_variant() {
 ParentRule rule_of(const SceneContext& context, const ObjectView& view, const EmitterDescription& emitter) {
     ParentRule rule = view.read<ChildKeys>();
     if (!view.has("share")) rule.share = rule.on == BirthEvent::impact && !rule.cloud;
-    for (const char* const key : {"burst", "start", "stop", "rate_per_frame", "rate_per_area"}) {
+    for (const char* const key :
+         {"burst", "start", "stop", "rate_per_frame", "rate_per_area", "rate_curve", "births"}) {
         if (view.has(key)) context.error(view, key, "is not for emitters of type \"child\", leave it out");
     }
     if (rule.share && (rule.on == BirthEvent::life || rule.on == BirthEvent::birth)) {
@@ -193,6 +194,7 @@ ParentRule rule_of(const SceneContext& context, const ObjectView& view, const Em
         context.error(view, "inherit_velocity",
                       "children of a cloud have all of their parent's velocity, leave it out");
     }
+    if (!check_drawn(context, view, "count", rule.count, between(0.0, 1e6))) rule.count = 1.0;
     if (rule.on == BirthEvent::life && emitter.rate.mean + emitter.rate.spread == 0.0) {
         context.warn(view, "emits nothing: it has no rate");
     }

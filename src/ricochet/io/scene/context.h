@@ -101,6 +101,8 @@ private:
 [[nodiscard]] const ObjectSpec& frame_spec();
 [[nodiscard]] const ObjectSpec& body_spec();
 [[nodiscard]] const ObjectSpec& emitter_spec();
+/// Table of the object that a drawn value can be.
+[[nodiscard]] const ObjectSpec& distribution_spec();
 [[nodiscard]] const ObjectSpec& particle_spec();
 /// Table of the object {"file": ...}, which can replace a list of particles.
 [[nodiscard]] const ObjectSpec& particle_file_spec();
@@ -218,6 +220,15 @@ void build_attributes(const SceneContext& context, SimulationSetup& setup);
 [[nodiscard]] FrameDescription frame_through(const std::vector<ObjectView>& keys, Diagnostics& diagnostics);
 /// Returns true if the key "frame" contains the name of one of these frames. Reports an unknown name.
 [[nodiscard]] bool is_frame_named(const SceneContext& context, const ObjectView& view, const FrameTree& frames);
+/// Reports a distribution that is unsound, or whose values leave the range. Returns true if the value can be drawn.
+[[nodiscard]] bool check_drawn(const SceneContext& context, const ObjectView& view, std::string_view key,
+                               const DrawnValue& value, const Range& range);
+[[nodiscard]] const ObjectSpec& thermal_spec();
+/// Returns the keys of an emitter that set mass, lifetime and radius.
+[[nodiscard]] Fields<EmitterDescription> body_fields();
+/// Reports contradictory settings of direction, velocity and mass. Sets the cone of the cosine law if it is not given,
+/// and values that can be drawn in place of refused ones. Shape and parent must be set.
+void check_launch(const SceneContext& context, const ObjectView& view, EmitterDescription& emitter);
 /// Builds the emitters. Must run after the frames and colliders of the setup are built.
 void build_emitters(SceneContext& context, SimulationSetup& setup);
 /// Returns the emitter shapes that need no file, with their keys.

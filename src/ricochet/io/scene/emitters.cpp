@@ -28,6 +28,15 @@ struct MeshKeys {
 
 constexpr Range kRate = between(0.0, 1e12);
 
+const ObjectSpec& rate_point_spec() {
+    using P = RatePoint;
+    static const ObjectSpec spec =
+        object<P>("rate point", "A rate at a time.",
+                  {{"time", &P::time, kCoordinate, "s", "Time, later than that of the point before.", kRequired},
+                   {"rate", &P::rate, kRate, "1/s", "Particles per second at this time.", kRequired}});
+    return spec;
+}
+
 Fields<EmitterDescription> schedule_fields() {
     using E = EmitterDescription;
     return {
@@ -41,6 +50,12 @@ Fields<EmitterDescription> schedule_fields() {
         {"rate_per_area", &E::rate_per_area, kRate, "1/pixel",
          "Instead of `rate`: particles per frame and per pixel that the shape covers in the image of the "
          "`reference_camera`."},
+        {"rate_curve", &E::rate_curve,
+         "Instead of `rate`: particles per second over time, linear between the points and constant beyond them.",
+         &rate_point_spec(), kTwoOrMore, Without{"`rate` applies"}},
+        {"births", &E::spacing, "Times of the births of a rate.",
+         Choices{choice(BirthSpacing::regular, "regular", "evenly spread"),
+                 choice(BirthSpacing::poisson, "poisson", "random and independent, a Poisson process of this rate")}},
         {"start", &E::start, kNotNegative, "s", "Time at which it begins."},
         {"stop", &E::stop, kNotNegative, "s", "Time at which the rate ends.", Without{"never"}},
         {"limit", &E::limit, kCount, "", "Largest number of births in total. For type `child`: per parent.",
@@ -51,18 +66,26 @@ Fields<EmitterDescription> schedule_fields() {
 
 Fields<EmitterDescription> launch_fields() {
     using E = EmitterDescription;
-    return {{"direction", &E::direction, kCoordinate, "", "Launch direction.", kNotZero,
-             Without{"the shape's own: the normal of a disk, sphere surface or mesh, the line from the tip of a cone, "
-                     "otherwise any direction"}},
-            {"cone", &E::cone_degrees, between(0.0, 180.0), "degrees",
-             "Half angle of a cone about the direction. Directions are uniform in solid angle."},
-            {"speed", &E::speed, kCoordinate, "m/s", "Speed along the direction."},
-            {"velocity", &E::velocity, kCoordinate, "m/s", "Velocity added to direction times speed."},
-            {"mass", &E::mass, kMass, "kg", "Mass of a particle.", LowEnd{kMass}},
-            {"lifetime", &E::lifetime, kNotNegative, "s", "Time after birth at which a particle is retired.",
-             LowEnd{kNotNegative}, Without{"for ever"}},
-            {"particle_radius", &E::radius, kLengthOrZero, "m", "Radius of a particle.", LowEnd{kNotNegative}},
-            {"frame", ValueType::text,
+    return {
+        {"direction", &E::direction, kCoordinate, "", "Launch direction.", kNotZero,
+         Without{"the shape's own: the normal of a disk, sphere surface or mesh, the line from the tip of a cone, "
+                 "otherwise any direction"}},
+        {"cone", &E::cone_degrees, between(0.0, 180.0), "degrees",
+         "Half angle of a cone about the direction, in which directions are drawn."},
+        {"direction_law", &E::direction_law, "Distribution of the directions in the cone.",
+         Choices{choice(DirectionLaw::uniform, "uniform", "uniform in solid angle"),
+                 choice(DirectionLaw::cosine, "cosine",
+                        "in proportion to the cosine of the angle to the direction; the default of `cone` is then "
+                        "90")}},
+        {"speed", &E::speed, kCoordinate, "m/s", "Speed along the direction.", &distribution_spec()},
+        {"thermal", &E::thermal, "Thermal velocities, instead of `speed`, `cone` and `direction_law`.", &thermal_spec(),
+         Without{"`speed` applies"}},
+        {"velocity", &E::velocity, kCoordinate, "m/s", "Velocity added to direction times speed."},
+    };
+}
+
+Fields<EmitterDescription> frame_fields() {
+    return {{"frame", ValueType::text,
              "Name of a frame in `frames`. Shape, direction and velocity are in its coordinates. Particles also get "
              "the frame's velocity at the time and position of their birth.",
              Without{"the world"}}};
@@ -186,11 +209,15 @@ double most_of(const MeanSpread& rate) { return rate.mean + rate.spread; }
 double most_rate(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
                  const EmitterDescription& emitter) {
     const double per_area = most_of(emitter.rate_per_area);
-    const int rates = (most_of(emitter.rate) > 0.0) + (most_of(emitter.rate_per_frame) > 0.0) + (per_area > 0.0);
+    const int rates = (most_of(emitter.rate) > 0.0) + (most_of(emitter.rate_per_frame) > 0.0) + (per_area > 0.0) +
+                      !emitter.rate_curve.empty();
     if (rates > 1) {
-        const char* const key = most_of(emitter.rate_per_frame) > 0.0 ? "rate_per_frame" : "rate_per_area";
+        const char* const key = !emitter.rate_curve.empty()             ? "rate_curve"
+                                : most_of(emitter.rate_per_frame) > 0.0 ? "rate_per_frame"
+                                                                        : "rate_per_area";
         context.error(view, key,
-                      "the emitter has another rate already, expected one of rate, rate_per_frame and rate_per_area");
+                      "the emitter has another rate already, expected one of rate, rate_per_frame, rate_per_area and "
+                      "rate_curve");
     }
     double per_frame = most_of(emitter.rate_per_frame);
     if (per_area > 0.0 && !setup.reference_camera) {
@@ -205,6 +232,21 @@ double most_rate(const SceneContext& context, const SimulationSetup& setup, cons
     return most_of(emitter.rate) + per_frame * setup.options.frame_rate;
 }
 
+bool has_rate(const EmitterDescription& emitter, double most) { return most > 0.0 || !emitter.rate_curve.empty(); }
+
+// Reports a curve whose times do not increase, and removes it.
+void check_curve(const SceneContext& context, const ObjectView& view, EmitterDescription& emitter) {
+    const std::vector<ObjectView> points = view.objects("rate_curve");
+    for (std::size_t k = 1; k < points.size(); ++k) {
+        if (emitter.rate_curve[k - 1].time < emitter.rate_curve[k].time) continue;
+        context.error(points[k], "time",
+                      fmt::format("found {} s, expected a time after that of the point before ({} s)",
+                                  emitter.rate_curve[k].time, emitter.rate_curve[k - 1].time));
+        emitter.rate_curve.clear();
+        return;
+    }
+}
+
 // Reports contradictory settings. Returns the largest possible number of births.
 double checked_births(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
                       const EmitterDescription& emitter) {
@@ -215,8 +257,13 @@ double checked_births(const SceneContext& context, const SimulationSetup& setup,
     }
     const double most = most_rate(context, setup, view, emitter);
     const double time = std::max(0.0, std::min(duration, emitter.stop) - emitter.start);
-    const double births = static_cast<double>(emitter.burst) + most * time;
-    if ((emitter.burst == 0 && most == 0.0) || emitter.limit == 0) {
+    const double by_rate = most * time + births_of_curve(emitter.rate_curve, emitter.start, emitter.start + time);
+    const double births = static_cast<double>(emitter.burst) + by_rate;
+    if (view.has("births") && emitter.spacing == BirthSpacing::poisson && by_rate == 0.0 && emitter.burst > 0) {
+        context.warn(view, "births", "has no effect: the emitter has only a burst and no rate");
+    }
+    if ((emitter.burst == 0 && by_rate == 0.0 && time > 0.0) || (emitter.burst == 0 && !has_rate(emitter, most)) ||
+        emitter.limit == 0) {
         context.warn(view, "emits nothing: it has neither a burst nor a rate");
     } else if (emitter.start >= duration) {
         context.warn(view, "start",
@@ -241,7 +288,8 @@ void check_volume(const SceneContext& context, const ObjectView& view, const Emi
 const ObjectSpec& emitter_spec() {
     static const ObjectSpec spec =
         object("emitter", "A source of particles. A pair [mean, spread] is drawn anew for every particle.",
-               joined({schedule_fields(), launch_fields(), emitter_look_fields()}), emitter_shapes());
+               joined({schedule_fields(), launch_fields(), body_fields(), frame_fields(), emitter_look_fields()}),
+               emitter_shapes());
     return spec;
 }
 
@@ -258,8 +306,10 @@ void build_emitters(SceneContext& context, SimulationSetup& setup) {
         if (view.type() == "child") {
             emitter.parent = rule_of(context, view, emitter);
         } else {
+            check_curve(context, view, emitter);
             births += checked_births(context, setup, view, emitter);
         }
+        check_launch(context, view, emitter);
         if (births > kMostBirths) {
             context.error(
                 view, fmt::format("with this emitter the scene gives birth to {:.3g} particles, expected at most {}",

@@ -76,6 +76,13 @@ struct Format<MeanSpread> {
     static void read(const JsonNode& node, const KeySpec& key, MeanSpread& value);
     static std::string text(const KeySpec& key, const MeanSpread& value);
 };
+/// Format of drawn values: as a pair, or an object with the keys of KeySpec::content, the distribution.
+template <>
+struct Format<DrawnValue> {
+    static constexpr ValueType kType = ValueType::drawn;
+    static void read(const JsonNode& node, const KeySpec& key, DrawnValue& value);
+    static std::string text(const KeySpec& key, const DrawnValue& value);
+};
 template <std::integral Member>
 struct Format<Member> {
     static constexpr ValueType kType = ValueType::integer;

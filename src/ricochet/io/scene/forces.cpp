@@ -297,9 +297,7 @@ void warn_of_forces_on_nobody(const SceneContext& context, const SimulationSetup
 
 bool has_only_points(const SimulationSetup& setup) {
     const auto is_point = [](const Particle& particle) { return particle.radius == 0.0; };
-    const auto emits_points = [](const EmitterDescription& emitter) {
-        return emitter.radius.mean == 0.0 && emitter.radius.spread == 0.0;
-    };
+    const auto emits_points = [](const EmitterDescription& emitter) { return emitter.radius.most() == 0.0; };
     return std::ranges::all_of(setup.particles, is_point) && std::ranges::all_of(setup.emitters, emits_points);
 }
 

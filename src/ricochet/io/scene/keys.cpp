@@ -116,6 +116,8 @@ std::string expectation(const KeySpec& key) {
             return fmt::format("a number {} 0, or three in [x, y, z]", key.range.lower_open ? "above" : "other than");
         case ValueType::pair:
             return pair_words(key);
+        case ValueType::drawn:
+            return pair_words(key) + ", or a distribution {\"type\": ...}";
         case ValueType::object:
             return fmt::format("an object {{...}} ({})", key.content->title);
         case ValueType::named_object:

@@ -27,6 +27,7 @@ enum class ValueType {
     two_numbers,     ///< [a, b]
     scale,           ///< a number or [x, y, z]; no component is zero
     pair,            ///< a number, or [mean, spread] for a uniform distribution from mean - spread to mean + spread
+    drawn,           ///< a pair, or an object of KeySpec::content: a distribution
     object,          ///< an object of KeySpec::content
     named_object,    ///< an object of KeySpec::content, or the name of an object in the table KeySpec::table
     list,            ///< a list of objects of KeySpec::content

@@ -1443,9 +1443,9 @@ class ParticleContacts(Thing):
     restitution_exponent: The restitution is proportional to (approach speed)^-exponent above `restitution_speed`.
         Default: 0.25.
     method: Method that resolves contacts between spheres. Default: "auto".
-    impact_budget: Largest number of impacts of one sphere on others in one step. If a sphere spends the budget, its
-        contacts are computed at once; with the method `events` it stops for the rest of the step, and the omitted
-        time is counted. Default: 1000.
+    impact_budget: Largest number of impacts of one sphere on others in one step. If a sphere spends the budget, all
+        contacts of its island are resolved together for the rest of the step. With the method `events` the sphere
+        stops instead, and the omitted time is counted. Default: 1000.
     materials: Materials of spheres by name, with the contact between spheres of the same material. Emitters and
         particles select a material by the key `material`. The column `material` of particles is its number in this
         order.

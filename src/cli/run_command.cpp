@@ -370,7 +370,9 @@ int report(const RunArguments& arguments, const Simulation& simulation, const st
 
 int cli::run_scene(const RunArguments& arguments) {
     const SharedRun run(arguments.shared ? SharedRun::With::launched : SharedRun::With::nobody);
-    PreparedRun prepared;
+    // On the heap: of a local object of this size, GCC 12 reports members as uninitialised.
+    const auto owned = std::make_unique<PreparedRun>();
+    PreparedRun& prepared = *owned;
     if (const auto failed = prepare_together(arguments, run, prepared)) return *failed;
     Simulation& simulation = *prepared.simulation;
     std::optional<InterruptGuard> guard;

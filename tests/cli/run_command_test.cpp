@@ -371,7 +371,7 @@ TEST(RunCommand, ResumesOnlyInterruptedRuns) {
     // little-endian, as in files of earlier versions
     (void)files.folder.write("out/checkpoint.bin", "4KHCOCIR and more");
     expect_refused(files.run({"--resume"}), 2, "a checkpoint of another version");
-    (void)files.folder.write("out/checkpoint.bin", "8KHCOCIR and more");
+    (void)files.folder.write("out/checkpoint.bin", "9KHCOCIR and more");
     expect_refused(files.run({"--resume"}), 2, "its checksum is wrong");
     std::filesystem::remove(files.folder.path("out/checkpoint.bin"));
     ASSERT_EQ(::mkfifo(files.folder.path("out/checkpoint.bin").c_str(), 0600), 0);

@@ -173,7 +173,8 @@ double expected_mass(const EmitterDescription& emitter) {
 }
 
 double most_speed(const EmitterDescription& emitter) {
-    constexpr double kFarthest = 6.0;  // in standard deviations; larger deviations have a probability below 1e-7
+    // In standard deviations; larger deviations have a probability below 1e-7. Local: only a warning depends on it.
+    constexpr double kFarthest = 6.0;
     if (emitter.thermal) return kFarthest * thermal_speed(*emitter.thermal) + std::fabs(emitter.thermal->drift);
     return std::max(std::fabs(emitter.speed.least()), std::fabs(emitter.speed.most()));
 }

@@ -14,6 +14,7 @@ namespace {
 /// Cells of the distribution of effusing speeds. Local: a constant of the method, far finer than it needs.
 constexpr int kEffusionCells = 256;
 /// Largest value of (x - s)^2 / 2 - s^2 / 2 among the speeds, beyond which exp() is below the last bit of the sum.
+/// Local: a constant of the method.
 constexpr double kFarthestExponent = 45.0;
 
 // Returns 1 - cos(angle) without cancellation at small angles.
@@ -41,7 +42,8 @@ Quantile effusing_speed(double drift) {
 }  // namespace
 
 double thermal_speed(const ThermalLaunch& thermal) {
-    constexpr double kBoltzmann = 1.380649e-23;  // in J/K, exact in the SI
+    // In J/K, exact in the SI. Local: a constant of nature.
+    constexpr double kBoltzmann = 1.380649e-23;
     return std::sqrt(kBoltzmann * thermal.temperature / thermal.molecule_mass);
 }
 

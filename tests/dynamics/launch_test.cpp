@@ -179,11 +179,15 @@ TEST(Launch, SettingsOutOfRangeAreRefused) {
     EXPECT_EQ(fault_of([](auto& e) { e.direction_law = DirectionLaw::cosine; }),
               "emitter 'test': the cosine law needs a cone above 0 and of at most 90 degrees");
     EXPECT_EQ(fault_of([](auto& e) { e.density = 1.0; }),
-              "emitter 'test': a mass from a density needs radii that make it at least 1e-300 kg");
+              "emitter 'test': the density and the radii must give masses of at least 1e-300 kg and below 1e308 kg");
     EXPECT_EQ(fault_of([](auto& e) {
                   e.thermal = ThermalLaunch{ThermalLaw::volume, 0.0, kMolecule, 0.0};
               }),
-              "emitter 'test': temperature and molecule mass must be > 0 and finite");
+              "emitter 'test': temperature and molecule mass must be > 0, with a thermal speed of at most 1e75 m/s");
+    EXPECT_EQ(fault_of([](auto& e) {
+                  e.thermal = ThermalLaunch{ThermalLaw::volume, 300.0, 1e-300, 0.0};
+              }),
+              "emitter 'test': temperature and molecule mass must be > 0, with a thermal speed of at most 1e75 m/s");
     EXPECT_EQ(fault_of([](auto& e) {
                   e.thermal = ThermalLaunch{ThermalLaw::volume, 300.0, kMolecule, 5.0};
               }),

@@ -91,7 +91,7 @@ void check_body(const EmitterDescription& emitter) {
     if (!emitter.density) return;
     require(*emitter.density > 0.0 && std::isfinite(*emitter.density), emitter, "the density must be > 0 kg/m^3");
     require(least_mass(emitter) >= kSmallestMass && std::isfinite(most_mass(emitter)), emitter,
-            "a mass from a density needs radii that make it at least 1e-300 kg");
+            "the density and the radii must give masses of at least 1e-300 kg and below 1e308 kg");
     require(!emitter.parent || !emitter.parent->share, emitter, "the mass of shares follows from the parent's");
 }
 
@@ -147,7 +147,9 @@ std::string thermal_problem(const ThermalLaunch& thermal) {
     const bool is_effusion = thermal.law == ThermalLaw::effusion;
     if (!is_effusion && thermal.law != ThermalLaw::volume) return "the thermal law must be volume or effusion";
     const double speed = thermal.molecule_mass > 0.0 ? thermal_speed(thermal) : 0.0;
-    if (!(speed > 0.0 && std::isfinite(speed))) return "temperature and molecule mass must be > 0 and finite";
+    if (!(speed > 0.0 && speed <= kLargestCoordinate)) {
+        return "temperature and molecule mass must be > 0, with a thermal speed of at most 1e75 m/s";
+    }
     if (!is_effusion && thermal.drift != 0.0) return "only an effusing gas has a drift; set the velocity instead";
     if (!(std::fabs(thermal.drift) <= kMostDrift * speed)) {
         return fmt::format("found a drift of {:.3g} m/s, expected at most 1000 times the thermal speed of {:.3g} m/s",

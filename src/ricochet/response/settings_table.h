@@ -81,9 +81,9 @@ inline constexpr Setting<ImpactTableRow> kImpactTableRowTable[] = {
 
 inline constexpr Setting<PairContactSettings> kPairBudgetTable[] = {
     {"impact_budget", &PairContactSettings::impact_budget, kCountFromOne, "",
-     "Largest number of impacts of one sphere on others in one step. If a sphere spends the budget, all contacts of its "
-     "island are resolved together for the rest of the step. With the method `events` the sphere stops instead, and "
-     "the omitted time is counted."},
+     "Largest number of impacts of one sphere on others in one step. If a sphere spends the budget, all contacts of "
+     "its island are resolved together for the rest of the step. With the method `events` the sphere stops instead, "
+     "and the omitted time is counted."},
 };
 
 inline constexpr Setting<ErrorTolerance> kToleranceTable[] = {

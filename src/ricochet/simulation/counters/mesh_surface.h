@@ -73,7 +73,7 @@ private:
     /// Finds the passages along a leg, in the order of time.
     void find(const PathLeg& leg, std::vector<Found>& found) const;
 
-    std::vector<Corners3> triangles_;  // without those that have no area
+    std::vector<Corners3> triangles_;  // all with an area
     std::vector<Vec3> normals_;        // of length 1, to the front
     BoxTree tree_;                     // boxes of the triangles
     bool is_closed_ = false;

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: the particles that have passed a counter, and those that are in its volume.
+/// Private to the simulation: particles that have passed a counter, and particles in its volume.
 #pragma once
 
 #include <cstdint>
